@@ -1,0 +1,57 @@
+"""One element of a fluent stream: a value, when it held, and when it became available.
+
+The definitions are those of Heintz (2009), *DyKnow: A Stream-Based Knowledge Processing
+Middleware Framework*, section 4.3.
+"""
+
+from dataclasses import dataclass
+from typing import Final, Generic, TypeVar, final
+
+from dyknow.time import Duration, TimePoint
+
+__all__ = ["NO_SAMPLE", "NO_VALUE", "NoValue", "Sample"]
+
+T = TypeVar("T")
+
+
+@final
+class NoValue:
+    """The explicit absence of a value at a time; `NO_VALUE` is its only member and is false."""
+
+    __slots__ = ()
+
+    def __bool__(self) -> bool:
+        return False
+
+    def __repr__(self) -> str:
+        return "NO_VALUE"
+
+
+NO_VALUE: Final = NoValue()
+
+
+@dataclass(slots=True)
+class Sample(Generic[T]):
+    """A value with its two times (definition 4.3.2); immutable by convention.
+
+    Not frozen: a frozen dataclass with slots takes three times as long to make, and samples are
+    made for every stream and frame.
+
+    Attributes:
+        value: What held.
+        valid_time: When it held in the world.
+        available_time: When the sample reached the receiver; unique within a stream.
+    """
+
+    value: T
+    valid_time: TimePoint
+    available_time: TimePoint
+
+    @property
+    def delay(self) -> Duration:
+        """Available time minus valid time."""
+        return Duration(self.available_time - self.valid_time)
+
+
+NO_SAMPLE: Final = Sample(NO_VALUE, TimePoint(-1), TimePoint(-1))
+"""What a join yields for a stream that has no sample yet; earlier than every time-point."""
