@@ -1,0 +1,50 @@
+# Two commands matter: `make demo` and `make test`. Both set up .venv first, from requirements.lock.
+
+PYTHON ?= python3
+BIN := .venv/bin
+READY := .venv/.ready
+PACKAGES := anchoring chronicles dyknow networks perception traffic
+
+.PHONY: help setup demo test check fix lock networks clean
+
+help:                ## Show this list
+	@grep -E '^[a-z]+: .*##|^[a-z]+:  +##' $(MAKEFILE_LIST) | sed -E 's/:[^#]*##/\t/' | expand -t 12
+
+setup: $(READY)      ## Install everything into .venv, as locked
+
+$(READY): requirements.lock pyproject.toml
+	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11))' || { \
+	  echo "Python 3.11 or newer is needed; set PYTHON=... to say which one to use." >&2; exit 2; }
+	@$(PYTHON) -m venv .venv || { \
+	  echo "Could not make .venv; on Debian and Ubuntu: apt-get install python3-venv" >&2; exit 2; }
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check --require-hashes -r requirements.lock
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check --no-deps --no-build-isolation -e .
+	$(BIN)/python -m traffic.sumo.libraries
+	@touch $(READY)
+
+demo: setup          ## Simulate, film, track, anchor, recognise, and report
+	$(BIN)/traffic run crossing
+
+test: check          ## All checks and all tests
+	$(BIN)/pytest -n 2
+
+check: setup         ## Format, lint, types and layers; no tests
+	$(BIN)/ruff format --check
+	$(BIN)/ruff check
+	$(BIN)/mypy
+	$(BIN)/lint-imports
+
+fix: setup           ## Format, and mend what the linter can mend
+	$(BIN)/ruff check --fix
+	$(BIN)/ruff format
+
+lock: setup          ## Resolve the dependencies again (needs uv)
+	uv pip compile --quiet --universal --python-version 3.11 --generate-hashes --no-emit-index-url \
+	  --extra dev --custom-compile-command "make lock" pyproject.toml -o requirements.lock
+
+networks: setup      ## Compile the bundled road networks again (needs the extra "build")
+	$(BIN)/traffic network build data/networks/crossing data/networks/crossing/crossing.net.xml --force
+	$(BIN)/traffic network build data/networks/rural data/networks/rural/rural.net.xml --force
+
+clean:               ## Remove what the other targets made
+	rm -rf .venv .mypy_cache .ruff_cache .pytest_cache .hypothesis build dist
