@@ -1,0 +1,71 @@
+"""Every error that traffic raises on purpose; each message is for the person who must act."""
+
+from collections.abc import Sequence
+from pathlib import Path
+
+__all__ = [
+    "NetworkBuildError",
+    "RecordingError",
+    "ResultError",
+    "ScenarioError",
+    "SimulatorError",
+    "TrafficError",
+]
+
+
+class TrafficError(Exception):
+    """The root of all errors of traffic."""
+
+
+class ScenarioError(TrafficError):
+    """A scenario is wrong, or there is none of that name.
+
+    Attributes:
+        faults: Everything that is wrong, in reading order; each text begins with the place if
+            there is one, as `file:line:column`, and ends with the line in question.
+    """
+
+    def __init__(self, *faults: str) -> None:
+        super().__init__("\n".join(faults))
+        self.faults: tuple[str, ...] = faults
+
+
+class SimulatorError(TrafficError):
+    """The simulator cannot start, or gave up while it ran.
+
+    Attributes:
+        what: What could not be done.
+        detail: What the simulator itself said, line by line.
+    """
+
+    def __init__(self, what: str, detail: Sequence[str] = ()) -> None:
+        super().__init__("\n  ".join([what, *detail]))
+        self.what = what
+        self.detail = tuple(detail)
+
+
+class NetworkBuildError(TrafficError):
+    """A network cannot be built from plain XML.
+
+    Attributes:
+        what: What could not be done.
+        detail: What netconvert itself said, line by line.
+    """
+
+    def __init__(self, what: str, detail: Sequence[str] = ()) -> None:
+        super().__init__("\n  ".join([what, *detail]))
+        self.what = what
+        self.detail = tuple(detail)
+
+
+class RecordingError(TrafficError):
+    """Recorded poses are missing, incomplete, or out of order."""
+
+    def __init__(self, path: Path, fault: str) -> None:
+        super().__init__(f"{path}: {fault}")
+        self.path = path
+        self.fault = fault
+
+
+class ResultError(TrafficError):
+    """A folder of results cannot be written or read."""
