@@ -1,0 +1,83 @@
+"""Monitors: a formula followed along one stream of states, or along many at once.
+
+Both rest on a `ProgressionTable`, which several of them may share. The time model is `hold`
+(see `dyknow.mtl.semantics`): a state holds from its time until the next state arrives.
+"""
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from dyknow.mtl.progression import ProgressionTable, Truths, Verdicts
+from dyknow.mtl.syntax import Formula, Verdict
+from dyknow.time import Duration, TimePoint
+
+__all__ = ["Monitor", "MonitorColumns"]
+
+
+class MonitorColumns:
+    """One formula followed for many objects or pairs, which come and go; one row for each.
+
+    Rows are numbered from 0 in the order in which they were added. `keep` closes the gaps, as
+    selecting rows of a table with the same mask does. The formula of a row is about the states
+    from the first `step` after the row was added (or restarted). A decided row keeps its verdict.
+
+    Attributes:
+        table: The formula and its residuals; may be shared with other monitors.
+        residuals: shape (n,), the number of each row's residual in *table*.
+    """
+
+    def __init__(self, table: ProgressionTable) -> None:
+        self.table = table
+        self.residuals: npt.NDArray[np.int64] = np.empty(0, dtype=np.int64)
+        self._time: TimePoint | None = None
+        table.register(self)
+
+    def __len__(self) -> int:
+        return len(self.residuals)
+
+    def add(self, count: int) -> npt.NDArray[np.intp]:
+        """Append *count* rows, in which no state has been seen, and return their numbers."""
+        first = len(self.residuals)
+        new = np.full(count, self.table.initial, dtype=np.int64)
+        self.residuals = np.concatenate((self.residuals, new))
+        return np.arange(first, first + count, dtype=np.intp)
+
+    def keep(self, rows: npt.NDArray[np.bool_] | npt.NDArray[np.intp]) -> None:
+        """Keep the rows for which a mask is true, or those with the given numbers, in order."""
+        self.residuals = self.residuals[rows]
+
+    def restart(self, rows: npt.NDArray[np.bool_] | npt.NDArray[np.intp]) -> None:
+        """Let the formula of these rows begin anew with the next state."""
+        self.residuals[rows] = self.table.initial
+
+    def step(self, now: TimePoint, truth: Truths) -> Verdicts:
+        """Take in the states of all rows at *now* and return the verdict of each row.
+
+        Args:
+            now: The time of the states, later than that of the step before.
+            truth: shape (n_atoms, n), bool, the truth of `table.atoms` in each row, as
+                `dyknow.mtl.columns.evaluate_atoms` computes it.
+
+        Returns:
+            shape (n,), int8: 1 true, 0 undecided, -1 false (`Verdict`).
+        """
+        elapsed = Duration(1) if self._time is None else Duration(now - self._time)
+        if elapsed <= 0:
+            raise ValueError(f"states must be in order of time: {now} ns after {self._time} ns")
+        self.residuals = self.table.progress(self.residuals, truth, elapsed)
+        self._time = now
+        verdicts = self.table.verdicts(self.residuals)
+        self.table.collect_when_full()
+        return verdicts
+
+    @property
+    def verdicts(self) -> Verdicts:
+        """shape (n,), int8: the present verdict of each row."""
+        return self.table.verdicts(self.residuals)
+
+    def residual(self, row: int) -> Formula:
+        """Return what must hold from now on in one row."""
+        return self.table.residual(int(self.residuals[row]))
