@@ -1,0 +1,23 @@
+"""Scenarios: what happens where, for how long, and from where it is watched.
+
+Read in this order: `model` (what a scenario consists of), `reading` (from TOML files, with
+every fault), `places` (where each key of a TOML text stands).
+"""
+
+from traffic.scenarios.model import CameraSettings, Scenario, VehicleType
+from traffic.scenarios.reading import (
+    bundled_scenarios,
+    find_scenario,
+    read_scenario,
+    scenario_of_configuration,
+)
+
+__all__ = [
+    "CameraSettings",
+    "Scenario",
+    "VehicleType",
+    "bundled_scenarios",
+    "find_scenario",
+    "read_scenario",
+    "scenario_of_configuration",
+]

@@ -1,0 +1,203 @@
+"""Finds and reads scenarios, and says everything that is wrong with one, with its place."""
+
+import re
+import tomllib
+from collections.abc import Iterator, Mapping
+from pathlib import Path
+from typing import Any
+
+from pydantic import ValidationError
+from pydantic_core import ErrorDetails
+
+from dyknow.source_text import SourceText, nearest_name
+from dyknow.time import MINUTE, Duration
+from traffic.bundled import data_folder
+from traffic.errors import ScenarioError
+from traffic.scenarios.model import (
+    CameraSettings,
+    Circulation,
+    Flow,
+    Scenario,
+    Settings,
+    Trips,
+    TurnShares,
+    VehicleType,
+)
+from traffic.scenarios.places import KeyPath, places_of_keys, span_of
+
+__all__ = [
+    "bundled_scenarios",
+    "find_scenario",
+    "read_scenario",
+    "scenario_of_configuration",
+]
+
+
+def bundled_scenarios() -> tuple[Scenario, ...]:
+    """Return the scenarios that come with the program, in order of name."""
+    return tuple(read_scenario(path) for path in _bundled_paths().values())
+
+
+def find_scenario(name: str) -> Scenario:
+    """Return the bundled scenario of that name, or read the file of that path.
+
+    Raises:
+        ScenarioError: There is neither, or the file has faults.
+    """
+    bundled = _bundled_paths()
+    if name in bundled:
+        return read_scenario(bundled[name])
+    if name.endswith(".toml") or Path(name).is_file():
+        return read_scenario(Path(name))
+    nearest = nearest_name(name, bundled)
+    hint = f"; did you mean '{nearest}'?" if nearest else ""
+    known = ", ".join(bundled)
+    raise ScenarioError(f"no scenario called '{name}'{hint} (there are {known}, or a .toml file)")
+
+
+def read_scenario(path: Path) -> Scenario:
+    """Read a scenario from a file.
+
+    Raises:
+        ScenarioError: The file cannot be read or has faults; all of them are named.
+    """
+    source = SourceText(str(path), _read_text(path))
+    values = _read_toml(source)
+    if "name" in values:
+        raise ScenarioError(
+            _fault("the name of a scenario is that of its file", ("name",), source)
+        )
+    try:
+        scenario = Scenario.model_validate(
+            {"name": path.stem, **values}, context={"folder": path.parent}
+        )
+    except ValidationError as error:
+        raise ScenarioError(*_faults_of(error, source)) from error
+    faults = [_fault(text, at, source) for text, at in _misplaced_names(scenario)]
+    if faults:
+        raise ScenarioError(*faults)
+    return scenario
+
+
+def scenario_of_configuration(path: Path, duration: Duration = MINUTE) -> Scenario:
+    """Return a scenario that runs any SUMO configuration for *duration*, without a camera.
+
+    Raises:
+        ScenarioError: There is no such file.
+    """
+    if not path.is_file():
+        raise ScenarioError(f"no SUMO configuration at '{path}'")
+    return Scenario(name=path.stem, sumocfg=path, duration=duration)
+
+
+def _bundled_paths() -> dict[str, Path]:
+    return {path.stem: path for path in sorted((data_folder() / "scenarios").glob("*.toml"))}
+
+
+def _read_text(path: Path) -> str:
+    try:
+        return path.read_text(encoding="utf-8")
+    except OSError as error:
+        raise ScenarioError(f"cannot read '{path}': {error.strerror}") from error
+    except UnicodeDecodeError as error:
+        raise ScenarioError(f"'{path}' is not a text in UTF-8") from error
+
+
+def _read_toml(source: SourceText) -> dict[str, Any]:
+    try:
+        return tomllib.loads(source.text)
+    except tomllib.TOMLDecodeError as error:
+        message = str(error)
+        at = re.search(r" \(at line (\d+), column (\d+)\)$", message)
+        place = f":{at[1]}:{at[2]}" if at else ""
+        text = message[: at.start()] if at else message
+        raise ScenarioError(f"{source.name}{place}: {text[0].lower()}{text[1:]}") from error
+
+
+def _faults_of(error: ValidationError, source: SourceText) -> Iterator[str]:
+    for detail in error.errors():
+        yield _fault(_message(detail), _path(detail), source)
+
+
+def _fault(message: str, path: KeyPath, source: SourceText) -> str:
+    span = span_of(path, places_of_keys(source), source)
+    return f"{span.place}: {message}\n{span.excerpt()}"
+
+
+def _path(detail: ErrorDetails) -> KeyPath:
+    return detail["loc"]
+
+
+def _message(detail: ErrorDetails) -> str:
+    name = str(detail["loc"][-1]) if detail["loc"] else ""
+    match detail["type"]:
+        case "extra_forbidden":
+            nearest = nearest_name(name, _known_keys(detail["loc"]))
+            hint = f"; did you mean '{nearest}'?" if nearest else ""
+            return f"no key called '{name}' here{hint}"
+        case "missing":
+            return f"the key '{name}' is missing"
+        case "value_error":
+            return detail["msg"].removeprefix("Value error, ")
+        case _:
+            expected = detail["msg"].removeprefix("Input should be ")
+            return f"expected {expected[0].lower()}{expected[1:]}, found {detail['input']!r}"
+
+
+def _known_keys(path: KeyPath) -> list[str]:
+    """Return the keys that may stand where the last of *path* stands."""
+    sections: Mapping[str, type[Settings]] = {
+        "camera": CameraSettings,
+        "vehicle_types": VehicleType,
+        "flows": Flow,
+        "trips": Trips,
+        "circulations": Circulation,
+        "turns": TurnShares,
+    }
+    outer = [part for part in path[:-1] if isinstance(part, str)]
+    model = sections.get(outer[-1], Scenario) if outer else Scenario
+    return [key for key in model.model_fields if (model, key) != (Scenario, "name")]
+
+
+def _misplaced_names(scenario: Scenario) -> Iterator[tuple[str, KeyPath]]:
+    """Yield each name of the scenario that stands for nothing, with its path."""
+    known = [vehicle_type.name for vehicle_type in scenario.vehicle_types]
+    for kind in ("flows", "trips", "circulations"):
+        for i, demand in enumerate(getattr(scenario, kind)):
+            for name in demand.types:
+                if name not in known:
+                    yield _unknown("vehicle type", name, known), (kind, i, "types", name)
+    yield from _misplaced_files(scenario)
+
+
+def _misplaced_files(scenario: Scenario) -> Iterator[tuple[str, KeyPath]]:
+    if scenario.sumocfg is not None and not scenario.sumocfg.is_file():
+        yield f"no SUMO configuration at '{scenario.sumocfg}'", ("sumocfg",)
+    if scenario.network is None:
+        return
+    if not scenario.network.is_file():
+        networks = [path.name for path in sorted((data_folder() / "networks").iterdir())]
+        name = scenario.network.name
+        yield f"{_unknown('network', name, networks)} (no file '{scenario.network}')", ("network",)
+        return
+    yield from _misplaced_roads(scenario, scenario.network)
+
+
+def _misplaced_roads(scenario: Scenario, network: Path) -> Iterator[tuple[str, KeyPath]]:
+    text = network.read_text(encoding="utf-8", errors="replace")
+    roads = re.findall(r'<edge id="([^":][^"]*)"', text)
+    for i, flow in enumerate(scenario.flows):
+        for name in flow.route:
+            if name not in roads:
+                yield _unknown("road", name, roads), ("flows", i, "route")
+    camera = scenario.camera
+    if camera is not None and isinstance(camera.look_at, str):
+        junctions = re.findall(r'<junction id="([^":][^"]*)"', text)
+        if camera.look_at not in junctions:
+            yield _unknown("junction", camera.look_at, junctions), ("camera", "look_at")
+
+
+def _unknown(kind: str, name: str, known: list[str]) -> str:
+    nearest = nearest_name(name, known)
+    hint = f"; did you mean '{nearest}'?" if nearest else ""
+    return f"no {kind} called '{name}'{hint}"
