@@ -4,6 +4,7 @@ from collections import deque
 from collections.abc import Callable
 from typing import Any, NewType
 
+from dyknow.runtime.accounts import Account
 from dyknow.streams.sample import Sample
 from dyknow.time import TimePoint
 
@@ -25,13 +26,15 @@ class StreamGenerator:
     Attributes:
         label: The name of the generator.
         depth: How many processes lie between it and the sources; 0 for a source.
+        account: What its process has cost and given.
     """
 
-    __slots__ = ("_last", "_receivers", "_waiting", "depth", "label")
+    __slots__ = ("_last", "_receivers", "_waiting", "account", "depth", "label")
 
     def __init__(self, label: Label, depth: int) -> None:
         self.label = label
         self.depth = depth
+        self.account = Account()
         self._last = TimePoint(-1)
         self._receivers: list[Receive] = []
         self._waiting: deque[Sample[Any]] = deque()
@@ -55,6 +58,7 @@ class StreamGenerator:
         if sample.available_time < earliest:
             sample = Sample(sample.value, sample.valid_time, earliest)
         self._last = sample.available_time
+        self.account.samples += 1
         if sample.available_time <= now:
             self._hand_out(sample)
         else:

@@ -10,7 +10,6 @@ from the last one has been done.
 
 import time
 from collections.abc import Callable, Mapping, Sequence
-from types import MappingProxyType
 
 from dyknow.runtime.accounts import Account
 from dyknow.runtime.agenda import Agenda
@@ -18,7 +17,7 @@ from dyknow.runtime.generators import Label, Receive, StreamGenerator
 from dyknow.runtime.processes import RunningSource, RunningUnit
 from dyknow.runtime.subscriptions import StreamViolation, Subscription
 from dyknow.streams.adapter import adapter_for
-from dyknow.streams.policy import Policy
+from dyknow.streams.policy import Policy, Violation
 from dyknow.streams.process import ComputationalUnit, Source
 from dyknow.time import TimePoint
 
@@ -48,7 +47,6 @@ class Kernel:
         self.now = TimePoint(0)
         self._meter = meter
         self._agenda = Agenda()
-        self._accounts: dict[Label, Account] = {}
         self._generators: dict[Label, StreamGenerator] = {}
         self._sources: list[RunningSource] = []
         self._units: list[RunningUnit] = []
@@ -58,7 +56,7 @@ class Kernel:
     @property
     def accounts(self) -> Mapping[Label, Account]:
         """The accounts of all processes, in the order in which they were added."""
-        return MappingProxyType(self._accounts)
+        return {label: generator.account for label, generator in self._generators.items()}
 
     @property
     def labels(self) -> Sequence[Label]:
@@ -72,10 +70,7 @@ class Kernel:
             ValueError: There is a generator of this name already.
         """
         generator = self._new_generator(label, 0)
-        running = RunningSource(
-            source, generator, self._agenda, self._accounts[label], self._meter
-        )
-        self._sources.append(running)
+        self._sources.append(RunningSource(source, generator, self._agenda, self._meter))
 
     def add_unit(self, label: Label, unit: ComputationalUnit, inputs: Sequence[Input]) -> None:
         """Add a computational unit that is fed by streams of generators added before.
@@ -86,9 +81,11 @@ class Kernel:
         providers = [self._generator(provider) for provider, _ in inputs]
         depth = 1 + max((provider.depth for provider in providers), default=0)
         generator = self._new_generator(label, depth)
-        running = RunningUnit(
-            unit, len(inputs), generator, self._agenda, self._accounts[label], self._meter
-        )
+
+        def publish(violation: Violation) -> None:
+            self._publish(StreamViolation(label, label, violation))
+
+        running = RunningUnit(unit, len(inputs), generator, self._agenda, self._meter, publish)
         self._units.append(running)
         for at, (provider, policy) in enumerate(inputs):
             self._connect(provider, label, running.receiver(at), policy)
@@ -162,7 +159,6 @@ class Kernel:
         if label in self._generators:
             raise ValueError(f"there is a stream generator called '{label}' already")
         generator = self._generators[label] = StreamGenerator(label, depth)
-        self._accounts[label] = Account()
         return generator
 
     def _connect(
@@ -179,8 +175,8 @@ class Kernel:
         return lambda: generator.disconnect(receive)
 
     def _publish(self, violation: StreamViolation) -> None:
-        account = self._accounts.get(violation.receiver)
-        if account is not None:
-            account.violations += 1
+        receiver = self._generators.get(violation.receiver)
+        if receiver is not None:
+            receiver.account.violations += 1
         for receive in self._violation_receivers:
             receive(violation)
