@@ -11,7 +11,6 @@ from typing import Any
 
 import numpy as np
 import numpy.typing as npt
-from networks.roads import RoadMap
 
 from dyknow.streams.sample import Sample
 from dyknow.streams.table import Table
@@ -66,13 +65,11 @@ class NearPairs:
     A car is active while it was observed within *active_for*.
 
     Args:
-        road_map: The map.
         distance: Metres along the road.
         active_for: How long a car counts after it was last observed.
     """
 
-    def __init__(self, road_map: RoadMap, *, distance: float, active_for: Duration) -> None:
-        self._map = road_map
+    def __init__(self, *, distance: float, active_for: Duration) -> None:
         self._distance = distance
         self._active_for = active_for
 
@@ -92,11 +89,9 @@ class NearPairs:
         return None
 
     def _pairs(self, cars: Table) -> Table:
-        road = cars["road"]
-        direction = self._map.direction_in_link[road]
-        link = self._map.link_of_road[road]
-        along = direction * self._map.offset_in_link[road] + cars["s"]
-        group = np.where(link >= 0, 2 * link.astype(np.int64) + (direction > 0), -1)
+        direction, link = cars["direction_in_link"], cars["link"].astype(np.int64)
+        along = direction * cars["position_along_link"]
+        group = np.where(link >= 0, 2 * link + (direction > 0), -1)
         behind, ahead = near_pairs_along(group, along, self._distance)
         first = np.concatenate([behind, ahead])
         second = np.concatenate([ahead, behind])

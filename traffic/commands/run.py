@@ -1,0 +1,69 @@
+"""`traffic run`: simulate, watch, recognise, score."""
+
+import sys
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+__all__ = ["run"]
+
+
+def run(
+    scenario: Annotated[
+        str | None, typer.Argument(help="A bundled name (see 'traffic scenarios') or a TOML file.")
+    ] = None,
+    *,
+    sumocfg: Annotated[
+        Path | None, typer.Option(help="Any SUMO configuration, instead of a scenario.")
+    ] = None,
+    look_at: Annotated[
+        str | None, typer.Option(help="Hover over this crossing (junction id) or point 'x,y'.")
+    ] = None,
+    view: Annotated[
+        str,
+        typer.Option(help="'vision': through the cameras; 'truth': positions of the simulator."),
+    ] = "vision",
+    sample_period: Annotated[
+        str, typer.Option(help="Period of the reasoning: milliseconds, or with a unit.")
+    ] = "100",
+    position_noise: Annotated[
+        float, typer.Option(help="With --view truth: largest error per axis, metres.")
+    ] = 0.0,
+    seed: Annotated[int, typer.Option(help="Seed of everything random.")] = 1,
+    duration: Annotated[
+        str | None, typer.Option(help="Simulated time, such as '60s'; default: the scenario's.")
+    ] = None,
+    out: Annotated[
+        Path | None, typer.Option(help="Folder for the run; default: a new one in 'runs'.")
+    ] = None,
+    json: Annotated[
+        bool, typer.Option("--json", help="Print one JSON document instead of tables.")
+    ] = False,
+    overlay: Annotated[
+        Path | None, typer.Option(help="Write both camera views with what is believed (.mp4).")
+    ] = None,
+) -> None:
+    """Simulate traffic, watch it, and report what was recognised, scored against the truth."""
+    from traffic.commands.showing import error_console, progress, show_result
+    from traffic.running import RunRequest, run_scenario
+
+    request = RunRequest.from_texts(
+        scenario=scenario,
+        sumocfg=sumocfg,
+        look_at=look_at,
+        view=view,
+        sample_period=sample_period,
+        position_noise=position_noise,
+        seed=seed,
+        duration=duration,
+        out=out,
+        overlay=overlay,
+    )
+    with progress() as on_progress:
+        result, folder = run_scenario(request, on_progress)
+    if json:
+        sys.stdout.write(result.model_dump_json(indent=1) + "\n")
+    else:
+        show_result(result)
+    error_console().print(f"run written to {folder}", highlight=False)

@@ -1,0 +1,117 @@
+"""Tables and progress bars that the commands share."""
+
+import sys
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+
+from rich.console import Console
+from rich.progress import BarColumn, Progress, TextColumn, TimeRemainingColumn
+from rich.table import Table
+
+from traffic.results import RecognitionResult, RunResult
+
+__all__ = ["error_console", "progress", "show_result"]
+
+_VERDICTS = {True: "[green]yes[/]", False: "[red]no[/]", None: "[dim]not in view[/]"}
+
+
+def error_console() -> Console:
+    """Return the console for messages, which is never standard output."""
+    return Console(stderr=True)
+
+
+@contextmanager
+def progress() -> Iterator[Callable[[float, float], None]]:
+    """Give a function to call with seconds done and seconds in all, shown on a terminal."""
+    columns = (TextColumn("{task.description}"), BarColumn(), TextColumn("{task.fields[at]}"))
+    console = error_console()
+    with Progress(
+        *columns, TimeRemainingColumn(), console=console, disable=not sys.stderr.isatty()
+    ) as bar:
+        task = bar.add_task("simulating", at="")
+
+        def on_progress(done: float, total: float) -> None:
+            bar.update(task, completed=done, total=total, at=f"{done:.0f} of {total:.0f} s")
+
+        yield on_progress
+
+
+def show_result(result: RunResult) -> None:
+    """Print the recognitions, what was missed, the score and the timing as tables."""
+    console = Console()
+    settings = ", ".join(f"{k} {v}" for k, v in result.settings.items() if v is not None)
+    console.print(f"[bold]{result.scenario}[/]: {settings}", highlight=False)
+    console.print(_recognitions(result))
+    if result.missed:
+        console.print(_missed(result))
+    console.print(_score(result))
+    console.print(_timing(result))
+
+
+def _recognitions(result: RunResult) -> Table:
+    table = Table(
+        "from s", "to s", "recognised", "who", "where", "truth agrees", title="Recognised"
+    )
+    for recognition in result.recognitions:
+        times = recognition.times.values()
+        table.add_row(
+            f"{min(times) / 1000:.1f}",
+            f"{max(times) / 1000:.1f}",
+            recognition.chronicle.replace("_", " "),
+            _who(recognition),
+            _where(recognition),
+            _VERDICTS[recognition.agrees],
+        )
+    return table
+
+
+def _who(recognition: RecognitionResult) -> str:
+    truth = recognition.truth or {}
+    cars = {k: v for k, v in recognition.arguments.items() if k.startswith("c")}
+    return ", ".join(f"{v} [dim]({truth.get(k, '?')})[/]" for k, v in cars.items())
+
+
+def _where(recognition: RecognitionResult) -> str:
+    places = [v for k, v in recognition.arguments.items() if not k.startswith("c")]
+    return " → ".join(places).replace("[", r"\[")
+
+
+def _missed(result: RunResult) -> Table:
+    table = Table("from s", "to s", "manoeuvre", "vehicles", "where", title="Missed")
+    for manoeuvre in result.missed:
+        table.add_row(
+            f"{manoeuvre.begin / 1000:.1f}",
+            f"{manoeuvre.end / 1000:.1f}",
+            manoeuvre.kind,
+            ", ".join(manoeuvre.vehicles),
+            " → ".join(manoeuvre.place).replace("[", r"\["),
+        )
+    return table
+
+
+def _score(result: RunResult) -> Table:
+    headings = ("", "true", "recognised", "correct", "precision", "recall", "not wholly in view")
+    table = Table(*headings, title="Score")
+    for kind, score in result.score.items():
+        counts = (score.truth, score.recognised, score.correct)
+        shares = (score.precision, score.recall)
+        table.add_row(
+            kind,
+            *(str(count) for count in counts),
+            *("–" if share is None else f"{share:.3f}" for share in shares),
+            str(score.left_out),
+        )
+    return table
+
+
+def _timing(result: RunResult) -> Table:
+    timing = result.timing
+    title = (
+        f"{timing.simulated_s:.0f} s simulated in {timing.wall_s:.1f} s: "
+        f"{timing.real_time_factor:.1f} times real time"
+    )
+    table = Table("stage", "CPU s", "share", title=title)
+    total = sum(timing.stages.values()) or 1.0
+    for stage, spent in sorted(timing.stages.items(), key=lambda item: -item[1]):
+        table.add_row(stage, f"{spent:.2f}", f"{spent / total:.0%}")
+    return table

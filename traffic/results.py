@@ -1,0 +1,179 @@
+"""What a run found out, as a value and as a folder of files.
+
+A run writes one folder, once. It is put together under a name ending in `.partial` and renamed
+when it is whole, so that an interrupted run never looks like a finished one.
+"""
+
+import shutil
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+
+from pydantic import BaseModel, ConfigDict, ValidationError
+
+from traffic.errors import ResultError
+
+__all__ = [
+    "Manoeuvre",
+    "RunResult",
+    "Score",
+    "Timing",
+    "read_result",
+    "run_folder",
+    "write_result",
+]
+
+_RESULT_FILE = "result.json"
+
+
+class _Value(BaseModel):
+    model_config = ConfigDict(extra="forbid", frozen=True)
+
+
+class RecognitionResult(_Value):
+    """One recognised chronicle.
+
+    Attributes:
+        chronicle: Name of the model.
+        arguments: Value of each variable of the model.
+        times: Each instant of the model, milliseconds.
+        recognised_at: When it was recognised, milliseconds.
+        events: The changes that made it.
+        truth: The simulator's id of each vehicle among the arguments, or None if a symbol
+            belongs to no vehicle.
+        agrees: Whether the truth knows this manoeuvre; None if it happened, but not wholly in
+            view, or if no truth applies.
+    """
+
+    chronicle: str
+    arguments: dict[str, str]
+    times: dict[str, float]
+    recognised_at: float
+    events: list[dict[str, Any]]
+    truth: dict[str, str] | None
+    agrees: bool | None
+
+
+class Manoeuvre(_Value):
+    """A true manoeuvre, for the list of what was missed.
+
+    Attributes:
+        kind: `left`, `right`, `straight`, `uturn` or `overtake`.
+        vehicles: The simulator's ids: of the turning vehicle, or of overtaker and overtaken.
+        place: Names of the link, crossing and link, or of the link.
+        begin: milliseconds.
+        end: milliseconds.
+    """
+
+    kind: str
+    vehicles: list[str]
+    place: list[str]
+    begin: float
+    end: float
+
+
+class Score(_Value):
+    """How recognitions of one kind compare with the truth.
+
+    Attributes:
+        truth: True manoeuvres wholly in view.
+        recognised: Recognitions, without those of manoeuvres not wholly in view.
+        correct: Recognitions that the truth confirms.
+        precision: correct / recognised, None if nothing was recognised.
+        recall: correct / truth, None if there was nothing to recognise.
+        left_out: True manoeuvres that were not wholly in view.
+    """
+
+    truth: int
+    recognised: int
+    correct: int
+    precision: float | None
+    recall: float | None
+    left_out: int
+
+
+class Timing(_Value):
+    """How long a run took.
+
+    Attributes:
+        simulated_s: Simulated seconds.
+        wall_s: Seconds on the clock, from the first step to the last.
+        real_time_factor: Simulated seconds per second on the clock.
+        stages: CPU seconds of each process of the network.
+    """
+
+    simulated_s: float
+    wall_s: float
+    real_time_factor: float
+    stages: dict[str, float]
+
+
+class RunResult(_Value):
+    """Everything that `traffic report` shows of a run.
+
+    Attributes:
+        scenario: Name of the scenario or of the SUMO configuration.
+        settings: What was asked for: view, seed, noise, period, duration.
+        recognitions: In order of time.
+        missed: True manoeuvres in view that were not recognised.
+        score: By kind of manoeuvre.
+        timing: How long it took.
+    """
+
+    scenario: str
+    settings: dict[str, str | int | float | None]
+    recognitions: list[RecognitionResult]
+    missed: list[Manoeuvre]
+    score: dict[str, Score]
+    timing: Timing
+
+
+@contextmanager
+def run_folder(path: Path) -> Iterator[Path]:
+    """Give a folder to write a run into, which becomes *path* when the block ends well.
+
+    Raises:
+        ResultError: *path* exists already or cannot be made.
+    """
+    if path.exists():
+        raise ResultError(f"'{path}' exists already; a run never changes what is there")
+    partial = path.with_name(path.name + ".partial")
+    try:
+        shutil.rmtree(partial, ignore_errors=True)
+        partial.mkdir(parents=True)
+    except OSError as error:
+        raise ResultError(f"cannot write to '{path.parent}': {error.strerror}") from error
+    try:
+        yield partial
+        partial.rename(path)
+    finally:
+        shutil.rmtree(partial, ignore_errors=True)
+
+
+def write_result(result: RunResult, folder: Path) -> None:
+    """Write *result* into the folder of its run."""
+    (folder / _RESULT_FILE).write_text(result.model_dump_json(indent=1) + "\n", encoding="utf-8")
+
+
+def read_result(folder: Path) -> RunResult:
+    """Read the result of the run in *folder*.
+
+    Raises:
+        ResultError: There is no finished run, or its file was damaged.
+    """
+    path = folder / _RESULT_FILE
+    try:
+        return RunResult.model_validate_json(path.read_text(encoding="utf-8"))
+    except OSError as error:
+        raise ResultError(f"'{folder}' holds no finished run: {error.strerror}") from error
+    except (ValidationError, UnicodeDecodeError) as error:
+        raise ResultError(f"'{path}' is not the result of a run: {_first_fault(error)}") from error
+
+
+def _first_fault(error: ValidationError | UnicodeDecodeError) -> str:
+    if isinstance(error, UnicodeDecodeError):
+        return "it is not UTF-8"
+    fault = error.errors()[0]
+    where = ".".join(str(part) for part in fault["loc"])
+    return f"{where}: {fault['msg']}" if where else fault["msg"]
