@@ -1,0 +1,97 @@
+"""From a scenario to a running simulator."""
+
+from collections.abc import Mapping
+from pathlib import Path
+
+import numpy as np
+
+from traffic.errors import SimulatorError
+from traffic.scenarios.model import Scenario
+from traffic.sumo.configuration import read_options, relocate, write_configuration
+from traffic.sumo.demand import departures, route_document
+from traffic.sumo.simulator import SumoSettings, SumoSimulation
+from traffic.sumo.topology import read_topology
+
+__all__ = ["network_of", "open_simulation", "prepare"]
+
+_SMOOTH = {"lanechange.duration": "2.5"}
+_GENTLE = {"collision.action": "warn"}
+_OURS = {"time-to-teleport": "-1"}
+_SUBLANES = "lateral-resolution"
+
+
+def open_simulation(
+    scenario: Scenario, folder: Path, generator: np.random.Generator
+) -> SumoSimulation:
+    """Start SUMO on *scenario*; everything that is written goes into *folder*.
+
+    The same state of *generator* gives the same traffic, step by step.
+
+    Raises:
+        SimulatorError: A file is missing or broken, or SUMO refuses to start.
+    """
+    demand, running, painting = generator.spawn(3)
+    configuration = prepare(scenario, folder, demand, seed=int(running.integers(2**31 - 1)))
+    settings = SumoSettings(
+        configuration=configuration,
+        messages=folder / "messages.txt",
+        step_length=scenario.step_length,
+        duration=scenario.duration,
+        warm_up=scenario.warm_up,
+    )
+    return SumoSimulation(settings, painting)
+
+
+def prepare(scenario: Scenario, folder: Path, generator: np.random.Generator, seed: int) -> Path:
+    """Write SUMO's configuration for *scenario* into *folder* and return its path.
+
+    `sumo -c` with that file runs the same traffic again.
+    """
+    folder.mkdir(parents=True, exist_ok=True)
+    options = (
+        _options_of_traffic(scenario, folder, generator)
+        if scenario.sumocfg is None
+        else _options_of_configuration(scenario.sumocfg, folder)
+    )
+    further = {name: _text(value) for name, value in scenario.sumo.items()}
+    path = folder / "simulation.sumocfg"
+    write_configuration({**options, **further, "seed": str(seed)}, path)
+    return path
+
+
+def network_of(scenario: Scenario) -> Path:
+    """Return the path of the compiled network on which *scenario* takes place.
+
+    Raises:
+        SimulatorError: The SUMO configuration is missing or broken, or names no network.
+    """
+    if scenario.network is not None:
+        return scenario.network
+    if scenario.sumocfg is None:
+        raise SimulatorError(f"the scenario '{scenario.name}' names no network")
+    options = read_options(scenario.sumocfg)
+    if "net-file" not in options:
+        raise SimulatorError(f"the SUMO configuration '{scenario.sumocfg}' names no 'net-file'")
+    return scenario.sumocfg.parent / options["net-file"]
+
+
+def _options_of_traffic(
+    scenario: Scenario, folder: Path, generator: np.random.Generator
+) -> dict[str, str]:
+    network = network_of(scenario).resolve()
+    drawn = departures(scenario, read_topology(network), generator)
+    routes = folder / "traffic.rou.xml"
+    routes.write_text(route_document(scenario, drawn, generator), encoding="utf-8")
+    return {"net-file": str(network), "route-files": routes.name, **_SMOOTH, **_GENTLE, **_OURS}
+
+
+def _options_of_configuration(configuration: Path, folder: Path) -> dict[str, str]:
+    configuration = configuration.resolve()
+    options = read_options(configuration)
+    moved = relocate(options, configuration.parent, folder)
+    smooth: Mapping[str, str] = {} if _SUBLANES in options else _SMOOTH
+    return {**smooth, **_GENTLE, **moved}
+
+
+def _text(value: str | float) -> str:
+    return str(value).lower() if isinstance(value, bool) else str(value)

@@ -1,0 +1,231 @@
+"""SUMO in this process, read once per step into columns.
+
+The plain getters of libsumo are faster than its subscriptions (facts of the project, and issue
+14101 of SUMO), and what never changes is asked once per vehicle. One simulation per process.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from types import ModuleType
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from dyknow.streams.table import Table
+from dyknow.time import SECOND, Duration, TimePoint, text_from_duration
+from traffic.errors import SimulatorError
+from traffic.sumo.colours import random_colours
+from traffic.sumo.libraries import load_simulator
+from traffic.sumo.output import CapturedOutput
+from traffic.sumo.simulation import VEHICLE, Frame, class_code, headings_of
+
+__all__ = ["SumoSettings", "SumoSimulation"]
+
+_NO_POSITION = -1e9
+_DEFAULT_COLOUR = (255, 255, 0)
+
+
+@dataclass(frozen=True, slots=True)
+class SumoSettings:
+    """How a simulator is run.
+
+    Attributes:
+        configuration: SUMO's configuration file, which says everything else.
+        messages: File for what SUMO prints.
+        step_length: Simulated time between two frames.
+        duration: When the last frame is due, from time 0.
+        warm_up: How long SUMO runs before time 0.
+    """
+
+    configuration: Path
+    messages: Path
+    step_length: Duration
+    duration: Duration
+    warm_up: Duration
+
+
+class SumoSimulation:
+    """A running SUMO (`traffic.sumo.simulation.Simulation`).
+
+    Time 0 is the begin that the configuration names, plus the warm-up. The frame of a time holds
+    what SUMO's own output files hold for it. Close it, best in a `with` block: SUMO writes its
+    files when it ends.
+
+    Args:
+        settings: What to run.
+        colours: Draws a colour for each vehicle whose type has none of its own.
+
+    Raises:
+        SimulatorError: SUMO cannot start; what it said is part of the message.
+    """
+
+    def __init__(self, settings: SumoSettings, colours: np.random.Generator) -> None:
+        self._settings = settings
+        self._output: CapturedOutput | None = CapturedOutput(settings.messages)
+        self._libsumo = load_simulator()
+        self._faults = (self._libsumo.TraCIException, self._libsumo.FatalTraCIError)
+        self._vehicles = _Vehicles(self._libsumo, colours)
+        self._n_steps = 0
+        self._call("SUMO cannot start", self._start)
+
+    @property
+    def names(self) -> Sequence[str]:
+        """SUMO's id of each vehicle, by the id in the tables."""
+        return self._vehicles.names
+
+    @property
+    def lanes(self) -> Sequence[str]:
+        """SUMO's id of each lane, by its number in `Frame.hidden`."""
+        return self._vehicles.lanes
+
+    @property
+    def time(self) -> TimePoint:
+        """The time of the next frame."""
+        return TimePoint(self._n_steps * self._settings.step_length)
+
+    def step(self) -> Frame | None:
+        """Let SUMO compute the next step and return it, or None after the last.
+
+        Raises:
+            SimulatorError: SUMO gave up.
+        """
+        if self._output is None or self.time > self._settings.duration:
+            return None
+        at = text_from_duration(self.time)
+        frame: Frame = self._call(f"SUMO failed at {at} ms", self._advance)
+        self._n_steps += 1
+        return frame
+
+    def close(self) -> None:
+        """End SUMO, which then completes its files."""
+        if self._output is None:
+            return
+        try:
+            with self._output.capture():
+                self._libsumo.close()
+        except self._faults as error:
+            raise SimulatorError("SUMO failed at its end", [str(error)]) from error
+        finally:
+            self._output.close()
+            self._output = None
+
+    def __enter__(self) -> "SumoSimulation":
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.close()
+
+    def _start(self) -> None:
+        settings = self._settings
+        step = f"{settings.step_length / SECOND:.9f}".rstrip("0")
+        self._libsumo.start(
+            ["sumo", "-c", str(settings.configuration), "--step-length", step, "--no-step-log"]
+        )
+        for _ in range(settings.warm_up // settings.step_length):
+            self._libsumo.simulationStep()
+
+    def _advance(self) -> Frame:
+        self._libsumo.simulationStep()
+        return self._vehicles.read(self.time)
+
+    def _call(self, doing: str, function: Any) -> Any:
+        """Call *function*; if SUMO objects, end SUMO and say all it said."""
+        if self._output is None:
+            raise SimulatorError("the simulation is closed")
+        try:
+            with self._output.capture():
+                return function()
+        except self._faults as error:
+            detail = [*str(error).splitlines(), *self._output.lines()]
+            self._abandon()
+            said = [line.strip() for line in dict.fromkeys(detail) if line.strip()]
+            raise SimulatorError(doing, said) from error
+
+    def _abandon(self) -> None:
+        try:
+            self.close()
+        except SimulatorError:
+            return  # the first error is the one that matters
+
+
+class _Vehicles:
+    """Reads the state of all vehicles; remembers what never changes."""
+
+    def __init__(self, libsumo: ModuleType, colours: np.random.Generator) -> None:
+        self._api: Any = libsumo.vehicle
+        self._generator = colours
+        self.names: list[str] = []
+        self.lanes: list[str] = []
+        self._number: dict[str, int] = {}
+        self._lane_number: dict[str, int] = {"": -1}
+        self._size = np.empty((64, 3))
+        self._colour = np.empty((64, 3), dtype=np.uint8)
+        self._class = np.empty(64, dtype=np.int8)
+
+    def read(self, time: TimePoint) -> Frame:
+        """Return the state of all vehicles that are somewhere."""
+        api = self._api
+        names: Sequence[str] = api.getIDList()
+        numbers = self._numbers(names)
+        front = np.array(list(map(api.getPosition, names)), dtype=np.float64).reshape(-1, 2)
+        angle = np.array(list(map(api.getAngle, names)), dtype=np.float64)
+        speed = np.array(list(map(api.getSpeed, names)), dtype=np.float64)
+        along = np.array(list(map(api.getLanePosition, names)), dtype=np.float64)
+        lane = np.array([self._lane(name) for name in map(api.getLaneID, names)], dtype=np.int32)
+        heading = headings_of(angle)
+        length, width, height = self._size[numbers].T
+        forward = np.column_stack([np.cos(heading), np.sin(heading)])
+        vehicles = Table(
+            VEHICLE,
+            numbers,
+            {
+                "position": front - forward * (length / 2)[:, None],
+                "heading": heading,
+                "speed": speed,
+                "length": length,
+                "width": width,
+                "height": height,
+                "colour": self._colour[numbers],
+                "vehicle_class": self._class[numbers],
+            },
+        )
+        hidden = Table(VEHICLE, numbers, {"lane": lane, "lane_position": along})
+        somewhere = front[:, 0] > _NO_POSITION
+        if not somewhere.all():
+            vehicles, hidden = vehicles.select(somewhere), hidden.select(somewhere)
+        return Frame(time, vehicles, hidden)
+
+    def _numbers(self, names: Sequence[str]) -> npt.NDArray[np.int64]:
+        find = self._number.get
+        numbers = [find(name, -1) for name in names]
+        if -1 in numbers:
+            numbers = [
+                self._register(name) if n < 0 else n
+                for n, name in zip(numbers, names, strict=True)
+            ]
+        return np.array(numbers, dtype=np.int64)
+
+    def _register(self, name: str) -> int:
+        number = len(self.names)
+        self.names.append(name)
+        self._number[name] = number
+        if number == len(self._class):
+            self._size = np.resize(self._size, (2 * number, 3))
+            self._colour = np.resize(self._colour, (2 * number, 3))
+            self._class = np.resize(self._class, 2 * number)
+        api = self._api
+        self._size[number] = api.getLength(name), api.getWidth(name), api.getHeight(name)
+        self._class[number] = class_code(api.getVehicleClass(name))
+        colour = api.getColor(name)[:3]
+        own = random_colours(self._generator, 1)[0] if colour == _DEFAULT_COLOUR else colour
+        self._colour[number] = own
+        return number
+
+    def _lane(self, name: str) -> int:
+        number = self._lane_number.get(name)
+        if number is None:
+            number = self._lane_number[name] = len(self.lanes)
+            self.lanes.append(name)
+        return number
