@@ -1,1 +1,28 @@
-"""To be described."""
+"""Road networks: where points lie, along which road, and where the roads lead.
+
+Read in this order: `geometry` (polylines), `parts` (a network in plain parts), `stretches` and
+`topology` (which junctions are crossings, which edges make a link), `graph` (directed roads),
+`turns` (left, right, straight, back), `links` (positions along links), `regions` (areas),
+`markings`, `roads` (the `RoadMap`), `assembling` (from parts to map), `reading` (SUMO networks),
+`building` (made-up ones), `errors`.
+"""
+
+from networks.errors import NetworkError, NetworkFileError, UnknownPlaceError
+from networks.markings import Marking, MarkingKind
+from networks.reading import read_road_map
+from networks.regions import Places
+from networks.roads import Moved, RoadMap
+from networks.turns import Turn
+
+__all__ = [
+    "Marking",
+    "MarkingKind",
+    "Moved",
+    "NetworkError",
+    "NetworkFileError",
+    "Places",
+    "RoadMap",
+    "Turn",
+    "UnknownPlaceError",
+    "read_road_map",
+]
