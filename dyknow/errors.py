@@ -14,6 +14,7 @@ __all__ = [
     "CircularDefinitionError",
     "DuplicateNameError",
     "DyKnowError",
+    "FeatureError",
     "FormulaSyntaxError",
     "KPLSyntaxError",
     "PolicyError",
@@ -97,6 +98,14 @@ class ProcessError(DyKnowError):
         super().__init__(f"process '{label}' failed at {text_from_duration(time)} ms")
         self.label = label
         self.time = time
+
+
+class FeatureError(DyKnowError):
+    """A state lacks a feature that a formula speaks of, or has an unfit value for it."""
+
+    def __init__(self, feature: str, expected: str, found: str) -> None:
+        super().__init__(f"feature '{feature}': expected {expected}, found {found}")
+        self.feature = feature
 
 
 class SpecificationErrors(ExceptionGroup[SpecificationError]):

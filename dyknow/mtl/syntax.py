@@ -1,0 +1,286 @@
+"""The syntax of formulas of metric temporal logic, one frozen class for each rule.
+
+The operators are those of Heintz (2009), definition 7.5.1, with quantification over named
+domains. The place of a node in its text takes no part in comparison.
+"""
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from enum import IntEnum
+
+from dyknow.source_text import MADE_IN_PYTHON, Span
+from dyknow.time import Duration
+
+__all__ = [
+    "ALWAYS_HENCEFORTH",
+    "FALSE",
+    "TRUE",
+    "Always",
+    "Argument",
+    "Arithmetic",
+    "Atom",
+    "Comparison",
+    "Conjunction",
+    "Disjunction",
+    "Equivalence",
+    "Eventually",
+    "Exists",
+    "Feature",
+    "ForAll",
+    "Formula",
+    "Implication",
+    "Interval",
+    "Minus",
+    "Name",
+    "Negation",
+    "Node",
+    "Number",
+    "Term",
+    "Text",
+    "Truth",
+    "Until",
+    "Verdict",
+    "descendants",
+    "parts",
+]
+
+
+class Verdict(IntEnum):
+    """What is known about a formula: it is true or false whatever comes, or not yet decided."""
+
+    FALSE = -1
+    UNDECIDED = 0
+    TRUE = 1
+
+
+@dataclass(frozen=True)
+class _Node:
+    """A piece of a formula and the place where it was written."""
+
+    span: Span = field(default=MADE_IN_PYTHON, compare=False, repr=False, kw_only=True)
+
+
+@dataclass(frozen=True)
+class Interval(_Node):
+    """The durations from now that an operator speaks of, both ends included.
+
+    Attributes:
+        start: The shortest duration.
+        end: The longest duration, or None if there is no bound.
+    """
+
+    start: Duration
+    end: Duration | None
+
+
+ALWAYS_HENCEFORTH = Interval(Duration(0), None)
+"""From now on, without end: the interval of an operator that is written without one."""
+
+
+@dataclass(frozen=True)
+class Name(_Node):
+    """A variable or an object, as an argument of a feature."""
+
+    name: str
+
+
+@dataclass(frozen=True)
+class Number(_Node):
+    """A number, finite and not negative; a negative one is a `Minus`."""
+
+    value: float
+
+    def __post_init__(self) -> None:
+        if not (math.isfinite(self.value) and self.value >= 0):
+            raise ValueError(f"expected a finite number of at least 0, found {self.value}")
+
+
+@dataclass(frozen=True)
+class Text(_Node):
+    """A text between double quotes."""
+
+    value: str
+
+
+@dataclass(frozen=True)
+class Feature(_Node):
+    """A feature of some objects; as a formula if it is boolean, as a term otherwise.
+
+    A bound variable that stands alone, as in `x != y`, is a feature without arguments until
+    quantifiers are expanded.
+    """
+
+    name: str
+    arguments: tuple["Argument", ...] = ()
+
+
+@dataclass(frozen=True)
+class Arithmetic(_Node):
+    """The sum, difference, product or quotient (`+ - * /`) of two terms."""
+
+    left: "Term"
+    operator: str
+    right: "Term"
+
+
+@dataclass(frozen=True)
+class Minus(_Node):
+    """A term with its sign changed."""
+
+    body: "Term"
+
+
+@dataclass(frozen=True)
+class Truth(_Node):
+    """The constant `true` or `false`."""
+
+    value: bool
+
+
+TRUE = Truth(value=True)
+FALSE = Truth(value=False)
+
+
+@dataclass(frozen=True)
+class Comparison(_Node):
+    """Two terms compared by one of `<`, `<=`, `=`, `!=`, `>=`, `>`."""
+
+    left: "Term"
+    operator: str
+    right: "Term"
+
+
+@dataclass(frozen=True)
+class Negation(_Node):
+    """`not`."""
+
+    body: "Formula"
+
+
+@dataclass(frozen=True)
+class Conjunction(_Node):
+    """`and` between two or more formulas."""
+
+    bodies: tuple["Formula", ...]
+
+
+@dataclass(frozen=True)
+class Disjunction(_Node):
+    """`or` between two or more formulas."""
+
+    bodies: tuple["Formula", ...]
+
+
+@dataclass(frozen=True)
+class Implication(_Node):
+    """`->`."""
+
+    left: "Formula"
+    right: "Formula"
+
+
+@dataclass(frozen=True)
+class Equivalence(_Node):
+    """`<->`."""
+
+    left: "Formula"
+    right: "Formula"
+
+
+@dataclass(frozen=True)
+class Always(_Node):
+    """The body holds at every instant of the interval."""
+
+    within: Interval
+    body: "Formula"
+
+
+@dataclass(frozen=True)
+class Eventually(_Node):
+    """The body holds at some instant of the interval."""
+
+    within: Interval
+    body: "Formula"
+
+
+@dataclass(frozen=True)
+class Until(_Node):
+    """The right side holds at some instant of the interval, the left one from now until then.
+
+    The left side need not hold at the instant at which the right one does.
+    """
+
+    within: Interval
+    left: "Formula"
+    right: "Formula"
+
+
+@dataclass(frozen=True)
+class ForAll(_Node):
+    """The body holds for every object of a domain."""
+
+    variable: Name
+    domain: Name
+    body: "Formula"
+
+
+@dataclass(frozen=True)
+class Exists(_Node):
+    """The body holds for some object of a domain."""
+
+    variable: Name
+    domain: Name
+    body: "Formula"
+
+
+Argument = Name | Number | Text
+Term = Truth | Number | Text | Feature | Arithmetic | Minus
+Atom = Feature | Comparison
+Formula = (
+    Truth
+    | Feature
+    | Comparison
+    | Negation
+    | Conjunction
+    | Disjunction
+    | Implication
+    | Equivalence
+    | Always
+    | Eventually
+    | Until
+    | ForAll
+    | Exists
+)
+Node = Formula | Term
+
+
+def parts(node: Node) -> tuple[Node, ...]:
+    """Return the formulas and terms that *node* is made of, in reading order."""
+    match node:
+        case Conjunction(bodies) | Disjunction(bodies):
+            return bodies
+        case (
+            Implication(left, right)
+            | Equivalence(left, right)
+            | Until(_, left, right)
+            | Comparison(left, _, right)
+            | Arithmetic(left, _, right)
+        ):
+            return (left, right)
+        case (
+            Negation(body) | Minus(body) | Always(_, body) | Eventually(_, body)
+            | ForAll(_, _, body) | Exists(_, _, body)
+        ):  # fmt: skip
+            return (body,)
+        case Truth() | Number() | Text() | Feature():
+            return ()
+
+
+def descendants(node: Node) -> Iterator[tuple[Node, int]]:
+    """Yield *node* and all it is made of, in reading order, each with its depth from 1."""
+    waiting: list[tuple[Node, int]] = [(node, 1)]
+    while waiting:
+        found, depth = waiting.pop()
+        yield found, depth
+        waiting.extend((part, depth + 1) for part in reversed(parts(found)))
