@@ -42,7 +42,8 @@ class Association:
         vehicle_ids, vehicle_positions = vehicles
         if not len(car_ids) or not len(vehicle_ids):
             return
-        distance, nearest = cKDTree(vehicle_positions).query(car_positions)
+        found = cKDTree(vehicle_positions).query(car_positions)
+        distance, nearest = np.asarray(found[0]), np.asarray(found[1])
         near = distance <= self._gate
         self._times.append(np.full(int(near.sum()), time, dtype=np.int64))
         self._cars.append(car_ids[near])

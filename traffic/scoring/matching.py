@@ -1,12 +1,15 @@
 """Pairs recognitions with the true manoeuvres that explain them, each at most once."""
 
 from collections import defaultdict
-from collections.abc import Hashable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 from dyknow.time import Duration
 
-__all__ = ["Episode", "match"]
+__all__ = ["Episode", "EpisodeKey", "match"]
+
+EpisodeKey = tuple[str, str, tuple[int, ...], tuple[str, ...]]
+"""The kind of manoeuvre, which one, the vehicles that do it, and where, by names."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -19,7 +22,7 @@ class Episode:
         end: Last time-point, nanoseconds.
     """
 
-    key: Hashable
+    key: EpisodeKey
     begin: int
     end: int
 
@@ -35,7 +38,7 @@ def match(
     Returns:
         Position of the truth by position of the claim.
     """
-    claims_by_key: defaultdict[Hashable, list[int]] = defaultdict(list)
+    claims_by_key: defaultdict[EpisodeKey, list[int]] = defaultdict(list)
     for i in sorted(range(len(claims)), key=lambda i: claims[i].end):
         claims_by_key[claims[i].key].append(i)
     pairs: dict[int, int] = {}

@@ -10,7 +10,9 @@ from traffic.scoring.matching import Episode, match
 
 # Claims of one key do not contain each other in practice: all last equally long.
 SPANS = st.lists(
-    st.builds(lambda k, b: Episode(k, b, b + 3), st.sampled_from("ab"), st.integers(0, 30)),
+    st.builds(
+        lambda k, b: Episode((k, k, (1,), ()), b, b + 3), st.sampled_from("ab"), st.integers(0, 30)
+    ),
     max_size=8,
 )
 
@@ -44,4 +46,6 @@ def test_as_many_pairs_as_possible_are_made(claims, truths, tolerance):
 
 def test_what_is_too_far_apart_in_time_does_not_match():
     """The same manoeuvre of the same vehicle a minute later is another one."""
-    assert match([Episode("a", 60, 63)], [Episode("a", 0, 3)], Duration(5)) == {}
+    key = ("turn", "left", (1,), ("a", "x", "b"))
+
+    assert match([Episode(key, 60, 63)], [Episode(key, 0, 3)], Duration(5)) == {}
