@@ -1,0 +1,222 @@
+"""The true overtakes."""
+
+import enum
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from dyknow.streams.table import Table
+from dyknow.time import MINUTE, Duration, TimePoint
+from traffic.truth.places import TruePlaces
+
+__all__ = ["OvertakeWatcher", "Side", "TrueOvertake"]
+
+Floats = npt.NDArray[np.float64]
+Positions = npt.NDArray[np.intp]
+
+_REACH = 60.0
+_CLEARANCE = 1.0
+_MOVING = 3.0
+_LONGEST: Duration = MINUTE
+_KEY_SHIFT = 32
+
+
+class Side(enum.Enum):
+    """On which side of the other the overtaker passed, seen in the direction of travel."""
+
+    LEFT = "left"
+    RIGHT = "right"
+
+
+@dataclass(frozen=True, slots=True)
+class TrueOvertake:
+    """A vehicle passed another on the same link.
+
+    Attributes:
+        overtaker: Id of the vehicle that was behind first.
+        overtaken: Id of the vehicle that was in front first.
+        link: The link.
+        begin: The last frame in which the overtaker is behind.
+        end: The first frame in which it is in front.
+        side: On which side it passed.
+        in_view: Whether both were in view all the while.
+    """
+
+    overtaker: int
+    overtaken: int
+    link: int
+    begin: TimePoint
+    end: TimePoint
+    side: Side
+    in_view: bool = True
+
+    @property
+    def vehicles(self) -> tuple[int, ...]:
+        """The ids of all vehicles that take part."""
+        return (self.overtaker, self.overtaken)
+
+
+class OvertakeWatcher:
+    """Compares all vehicles that are near each other on a link and travel the same way.
+
+    One of them is *behind* the other if its centre is behind the other's by at least half of both
+    lengths and 1 m, along the link; it is *in front* likewise. An overtake begins in the last
+    frame in which A is behind B and ends in the first in which A is in front of B, at most 60 s
+    later. In all frames from one to the other both are on the same link, travel in the same
+    direction at more than 3 m/s, and are within 60 m of each other. So the changes of order in
+    queues are none, and neither is passing a vehicle that stands.
+    """
+
+    def __init__(self) -> None:
+        self._pairs = _Pairs.none()
+
+    def observe(self, time: TimePoint, vehicles: Table, places: TruePlaces) -> list[TrueOvertake]:
+        """Take in a frame and return the overtakes that end in it."""
+        before, now = self._pairs, _near_pairs(time, vehicles, places)
+        at = np.searchsorted(before.key, now.key)
+        at = np.minimum(at, max(len(before.key) - 1, 0))
+        known = before.key[at] == now.key if len(before.key) else np.zeros(len(at), dtype=np.bool_)
+        before = before.take(at) if len(before.key) else now
+        ended = self._ended(time, before, now, known)
+        found = list(_overtakes(time, before, now, np.flatnonzero(ended), places))
+        self._pairs = _carried(before, now, known)
+        return found
+
+    @staticmethod
+    def _ended(
+        time: TimePoint, before: "_Pairs", now: "_Pairs", known: npt.NDArray[np.bool_]
+    ) -> npt.NDArray[np.bool_]:
+        swapped = before.order * now.order == -1
+        steady = before.moving & now.moving & (time - before.since <= _LONGEST)
+        ended: npt.NDArray[np.bool_] = known & swapped & steady
+        return ended
+
+
+@dataclass(slots=True)
+class _Pairs:
+    """Pairs of vehicles near each other, in order of key.
+
+    Attributes:
+        key: The smaller id, shifted, and the larger.
+        first: Row of the vehicle with the smaller id.
+        order: 1 if the vehicle with the larger id is in front, -1 if it is behind, 0 beside.
+        since: The last frame in which one of them was in front.
+        moving: Whether both have been moving since then.
+        gap: The smallest distance along the link since then, metres.
+        aside: How far the larger id was to the left of the smaller at that moment, metres.
+    """
+
+    key: npt.NDArray[np.int64]
+    first: Positions
+    order: npt.NDArray[np.int8]
+    since: npt.NDArray[np.int64]
+    moving: npt.NDArray[np.bool_]
+    gap: Floats
+    aside: Floats
+
+    @classmethod
+    def none(cls) -> "_Pairs":
+        """Return no pairs."""
+        none = np.empty(0, dtype=np.int64)
+        empty = np.empty(0)
+        return cls(none, none, none.astype(np.int8), none, none.astype(np.bool_), empty, empty)
+
+    def take(self, rows: Positions) -> "_Pairs":
+        """Return the pairs at *rows*."""
+        return _Pairs(
+            self.key[rows],
+            self.first[rows],
+            self.order[rows],
+            self.since[rows],
+            self.moving[rows],
+            self.gap[rows],
+            self.aside[rows],
+        )
+
+
+def _near_pairs(time: TimePoint, vehicles: Table, places: TruePlaces) -> _Pairs:
+    """Return the pairs of a frame as if nothing had been before."""
+    behind, in_front = _neighbours(places)
+    ids = vehicles.ids
+    larger_in_front = ids[in_front] > ids[behind]
+    first = np.where(larger_in_front, behind, in_front)
+    second = np.where(larger_in_front, in_front, behind)
+    gap = places.progress[in_front] - places.progress[behind]
+    clear = gap >= (vehicles["length"][first] + vehicles["length"][second]) / 2 + _CLEARANCE
+    fast = vehicles["speed"] > _MOVING
+    key = ids[first] << _KEY_SHIFT | ids[second]
+    pairs = _Pairs(
+        key=key,
+        first=first,
+        order=np.where(clear, np.where(larger_in_front, 1, -1), 0).astype(np.int8),
+        since=np.full(len(key), time, dtype=np.int64),
+        moving=fast[first] & fast[second],
+        gap=gap,
+        aside=_aside(vehicles, first, second),
+    )
+    return pairs.take(np.argsort(key))
+
+
+def _neighbours(places: TruePlaces) -> tuple[Positions, Positions]:
+    """Return the rows of all pairs within reach: those behind, and those in front of them."""
+    (rows,) = np.nonzero((places.link >= 0) & np.isfinite(places.progress))
+    lane = places.link[rows].astype(np.int64) * 2 + (places.direction[rows] > 0)
+    order = np.lexsort((places.progress[rows], lane))
+    rows, lane, progress = rows[order], lane[order], places.progress[rows[order]]
+    behind, in_front = [rows[:0]], [rows[:0]]
+    for shift in range(1, len(rows)):
+        near = (lane[shift:] == lane[:-shift]) & (progress[shift:] - progress[:-shift] <= _REACH)
+        if not near.any():
+            break
+        behind.append(rows[:-shift][near])
+        in_front.append(rows[shift:][near])
+    return np.concatenate(behind), np.concatenate(in_front)
+
+
+def _aside(vehicles: Table, first: Positions, second: Positions) -> Floats:
+    """Return how far each *second* is to the left of its *first*, metres."""
+    heading, position = vehicles["heading"], vehicles["position"]
+    east = np.cos(heading[first]) + np.cos(heading[second])
+    north = np.sin(heading[first]) + np.sin(heading[second])
+    offset = position[second] - position[first]
+    left: Floats = (east * offset[:, 1] - north * offset[:, 0]) / np.hypot(east, north)
+    return left
+
+
+def _carried(before: _Pairs, now: _Pairs, known: npt.NDArray[np.bool_]) -> _Pairs:
+    """Return the pairs of now, where those beside each other keep what was before."""
+    beside = known & (now.order == 0)
+    closer = now.gap <= before.gap
+    return _Pairs(
+        key=now.key,
+        first=now.first,
+        order=np.where(beside, before.order, now.order),
+        since=np.where(beside, before.since, now.since),
+        moving=np.where(beside, before.moving & now.moving, now.moving),
+        gap=np.where(beside, np.minimum(before.gap, now.gap), now.gap),
+        aside=np.where(beside & ~closer, before.aside, now.aside),
+    )
+
+
+def _overtakes(
+    time: TimePoint,
+    before: _Pairs,
+    now: _Pairs,
+    ended: Positions,
+    places: TruePlaces,
+) -> Iterator[TrueOvertake]:
+    for row in ended:
+        pair = (int(now.key[row] >> _KEY_SHIFT), int(now.key[row]) & ((1 << _KEY_SHIFT) - 1))
+        was_behind = 0 if before.order[row] > 0 else 1
+        closest = before if before.gap[row] <= now.gap[row] else now
+        larger_is_left = closest.aside[row] > 0
+        yield TrueOvertake(
+            overtaker=pair[was_behind],
+            overtaken=pair[1 - was_behind],
+            link=int(places.link[now.first[row]]),
+            begin=TimePoint(int(before.since[row])),
+            end=time,
+            side=Side.LEFT if larger_is_left == (was_behind == 1) else Side.RIGHT,
+        )
