@@ -6,10 +6,10 @@ Exit status: 0 done, 1 a bug, 2 the user's input is at fault, 130 interrupted.
 import sys
 
 import typer
-from perception.errors import PerceptionError
 
 from dyknow.errors import DyKnowError, SpecificationError, SpecificationErrors
 from networks.errors import NetworkError
+from perception.errors import PerceptionError
 from traffic.commands import check, network, report, run, scenarios
 from traffic.errors import TrafficError
 

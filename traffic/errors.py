@@ -6,6 +6,7 @@ from pathlib import Path
 __all__ = [
     "NetworkBuildError",
     "RecordingError",
+    "RequestError",
     "ResultError",
     "ScenarioError",
     "SimulatorError",
@@ -69,3 +70,11 @@ class RecordingError(TrafficError):
 
 class ResultError(TrafficError):
     """A folder of results cannot be written or read."""
+
+
+class RequestError(TrafficError):
+    """What was asked for on the command line is impossible."""
+
+    def __init__(self, option: str, expected: str, found: object) -> None:
+        super().__init__(f"{option}: expected {expected}, found {str(found)!r}")
+        self.option = option

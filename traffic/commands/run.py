@@ -46,7 +46,8 @@ def run(
 ) -> None:
     """Simulate traffic, watch it, and report what was recognised, scored against the truth."""
     from traffic.commands.showing import error_console, progress, show_result
-    from traffic.running import RunRequest, run_scenario
+    from traffic.request import RunRequest
+    from traffic.running import run_scenario
 
     request = RunRequest.from_texts(
         scenario=scenario,

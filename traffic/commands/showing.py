@@ -5,12 +5,14 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 
 from rich.console import Console
+from rich.markup import escape
 from rich.progress import BarColumn, Progress, TextColumn, TimeRemainingColumn
 from rich.table import Table
 
+from traffic.maps import MapSummary
 from traffic.results import RecognitionResult, RunResult
 
-__all__ = ["error_console", "progress", "show_result"]
+__all__ = ["error_console", "progress", "show_network", "show_result"]
 
 _VERDICTS = {True: "[green]yes[/]", False: "[red]no[/]", None: "[dim]not in view[/]"}
 
@@ -48,6 +50,23 @@ def show_result(result: RunResult) -> None:
     console.print(_timing(result))
 
 
+def show_network(summary: MapSummary) -> None:
+    """Print the crossings of a map as a table."""
+    side = "left" if summary.left_hand else "right"
+    title = (
+        f"{summary.network}: {len(summary.crossings)} crossings, {summary.links} links, "
+        f"{summary.lanes} lanes, driving on the {side}"
+    )
+    table = Table("crossing", "centre, m", "links", "ways through", title=escape(title))
+    for crossing in summary.crossings:
+        turns = ", ".join(f"{count} {turn}" for turn, count in crossing.turns.items())
+        x, y = crossing.centre
+        table.add_row(
+            escape(crossing.name), f"{x:.0f}, {y:.0f}", escape("\n".join(crossing.links)), turns
+        )
+    Console().print(table)
+
+
 def _recognitions(result: RunResult) -> Table:
     table = Table(
         "from s", "to s", "recognised", "who", "where", "truth agrees", title="Recognised"
@@ -73,7 +92,7 @@ def _who(recognition: RecognitionResult) -> str:
 
 def _where(recognition: RecognitionResult) -> str:
     places = [v for k, v in recognition.arguments.items() if not k.startswith("c")]
-    return " → ".join(places).replace("[", r"\[")
+    return escape(" → ".join(places))
 
 
 def _missed(result: RunResult) -> Table:
@@ -84,7 +103,7 @@ def _missed(result: RunResult) -> Table:
             f"{manoeuvre.end / 1000:.1f}",
             manoeuvre.kind,
             ", ".join(manoeuvre.vehicles),
-            " → ".join(manoeuvre.place).replace("[", r"\["),
+            escape(" → ".join(manoeuvre.place)),
         )
     return table
 

@@ -1,0 +1,169 @@
+"""What a user asks of a run, read from the command line and checked before anything starts."""
+
+import math
+from dataclasses import dataclass
+from enum import StrEnum
+from pathlib import Path
+
+from dyknow.time import MILLISECOND, Duration, duration_from_text
+from traffic.errors import RequestError
+from traffic.scenarios import CameraSettings, Scenario, find_scenario, scenario_of_configuration
+
+__all__ = ["RunRequest", "View"]
+
+_FRAME_PERIOD = Duration(40 * MILLISECOND)
+_LONGEST_STEP = 100
+_SHORTEST_PERIOD = 10
+_HOVER = CameraSettings(look_at=(0.0, 0.0), altitude=150.0, field_of_view=84.0)
+"""From where a crossing is watched of which no scenario says how."""
+
+
+class View(StrEnum):
+    """Who makes the percepts."""
+
+    VISION = "vision"
+    TRUTH = "truth"
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class RunRequest:
+    """What a user asks of a run.
+
+    Attributes:
+        scenario: Where and what; its duration and camera are those asked for.
+        view: Through the cameras, or from the simulator's positions.
+        sample_period: Period of the reasoning.
+        position_noise: Largest error of positions per axis, metres; only without cameras.
+        seed: Of everything random.
+        out: Folder of the run.
+        overlay: Video of what is believed, if wanted.
+    """
+
+    scenario: Scenario
+    view: View
+    sample_period: Duration
+    position_noise: float
+    seed: int
+    out: Path
+    overlay: Path | None
+
+    @classmethod
+    def from_texts(  # noqa: PLR0913, one for each option of the command
+        cls,
+        *,
+        scenario: str | None = None,
+        sumocfg: Path | None = None,
+        look_at: str | None = None,
+        view: str = "vision",
+        sample_period: str = "100",
+        position_noise: float = 0.0,
+        seed: int = 1,
+        duration: str | None = None,
+        out: Path | None = None,
+        overlay: Path | None = None,
+    ) -> "RunRequest":
+        """Read what a user wrote on the command line.
+
+        Raises:
+            RequestError: An option is impossible, or has no meaning beside another one.
+            ScenarioError: There is no such scenario, or it has faults.
+        """
+        seen = _view(view)
+        if seen is View.TRUTH:
+            _refuse(look_at, "--look-at", View.VISION)
+            _refuse(overlay, "--overlay", View.VISION)
+        else:
+            _refuse(position_noise, "--position-noise", View.TRUTH)
+        if not 0 <= position_noise < math.inf:
+            raise RequestError(
+                "--position-noise", "a number of metres, at least 0", position_noise
+            )
+        if seed < 0:
+            raise RequestError("--seed", "a number of at least 0", seed)
+        period = _period(sample_period, seen)
+        asked = _scenario(scenario, sumocfg).model_copy(
+            update={"step_length": _FRAME_PERIOD if seen is View.VISION else _step(period)}
+        )
+        if duration is not None:
+            asked = asked.model_copy(update={"duration": _duration(duration, "--duration")})
+        if look_at is not None:
+            asked = asked.model_copy(update={"camera": _hover(look_at, asked.camera)})
+        if seen is View.VISION and asked.camera is None:
+            raise RequestError("--look-at", "a junction or x,y to hover over", "nothing")
+        return cls(
+            scenario=asked,
+            view=seen,
+            sample_period=period,
+            position_noise=position_noise,
+            seed=seed,
+            out=out if out is not None else _free_folder(asked.name),
+            overlay=overlay,
+        )
+
+
+def _view(text: str) -> View:
+    try:
+        return View(text)
+    except ValueError:
+        raise RequestError("--view", "'vision' or 'truth'", text) from None
+
+
+def _refuse(value: object, option: str, view: View) -> None:
+    if value:
+        raise RequestError(
+            option, f"nothing, because it only has a meaning with --view {view}", value
+        )
+
+
+def _scenario(name: str | None, sumocfg: Path | None) -> Scenario:
+    if (name is None) == (sumocfg is None):
+        found = "both" if name is not None else "neither"
+        raise RequestError("traffic run", "either a scenario or --sumocfg", found)
+    if sumocfg is not None:
+        return scenario_of_configuration(sumocfg)
+    return find_scenario(name or "")
+
+
+def _duration(text: str, option: str) -> Duration:
+    try:
+        duration = duration_from_text(text)
+    except ValueError as error:
+        raise RequestError(option, "a duration such as '200', '1.5 s' or '1 min'", text) from error
+    if duration <= 0:
+        raise RequestError(option, "a duration above zero", text)
+    return duration
+
+
+def _period(text: str, view: View) -> Duration:
+    period = _duration(text, "--sample-period")
+    shortest = _FRAME_PERIOD if view is View.VISION else Duration(_SHORTEST_PERIOD * MILLISECOND)
+    if period < shortest or period % (_SHORTEST_PERIOD * MILLISECOND):
+        wanted = f"a multiple of {_SHORTEST_PERIOD} ms, at least {shortest // MILLISECOND} ms"
+        raise RequestError("--sample-period", wanted, text)
+    return period
+
+
+def _step(period: Duration) -> Duration:
+    """Return the longest step of at most 100 ms of which *period* is a multiple."""
+    length = period // MILLISECOND
+    longest = next(step for step in range(_LONGEST_STEP, 0, -1) if length % step == 0)
+    return Duration(longest * MILLISECOND)
+
+
+def _hover(look_at: str, camera: CameraSettings | None) -> CameraSettings:
+    x, comma, y = look_at.partition(",")
+    place: str | tuple[float, float] = look_at
+    if comma:
+        try:
+            place = (float(x), float(y))
+        except ValueError:
+            place = look_at
+    return (camera or _HOVER).model_copy(update={"look_at": place})
+
+
+def _free_folder(name: str) -> Path:
+    """Return the first folder `runs/NAME-0001`, `runs/NAME-0002`, … that does not exist."""
+    number = 1
+    while (folder := Path("runs") / f"{name}-{number:04d}").exists():
+        number += 1
+    return folder

@@ -1,0 +1,157 @@
+"""One run: a scenario, simulated, watched, recognised, scored, and written to a folder."""
+
+import math
+import time
+from collections.abc import Callable, Iterator
+from pathlib import Path
+
+import numpy as np
+
+from chronicles.events import Recognition
+from dyknow.streams.sample import Sample
+from dyknow.streams.table import Table
+from dyknow.time import MILLISECOND, SECOND, TimePoint
+from networks.reading import read_road_map
+from networks.roads import RoadMap
+from perception.camera import Calibration, Camera
+from traffic.errors import ScenarioError
+from traffic.request import RunRequest, View
+from traffic.results import RunResult, Timing, run_folder, write_result
+from traffic.scenarios import CameraSettings
+from traffic.scoring.score import Scorer
+from traffic.sumo.opening import network_of, open_simulation
+from traffic.sumo.simulation import Frame, Simulation
+from traffic.system import MonitoringSystem, World
+
+__all__ = ["run_scenario"]
+
+OnProgress = Callable[[float, float], None]
+"""Told the seconds simulated so far and the seconds in all."""
+
+
+def run_scenario(request: RunRequest, on_progress: OnProgress) -> tuple[RunResult, Path]:
+    """Do what is asked; return the result and the folder it was written to.
+
+    Raises:
+        TrafficError: The folder exists or cannot be written, the simulator gave up, or the
+            scenario has a fault that only its network shows.
+        NetworkError: The network cannot be read.
+    """
+    road_map = read_road_map(network_of(request.scenario))
+    camera = _camera(request.scenario.camera, road_map) if request.view is View.VISION else None
+    traffic, sensors = np.random.default_rng(request.seed).spawn(2)  # noqa: TID251, the run's
+    with (
+        run_folder(request.out) as folder,
+        open_simulation(request.scenario, folder / "sumo", traffic) as simulation,
+    ):
+        run = _Run(request, road_map, simulation, camera, sensors)
+        result = run.complete(on_progress)
+        write_result(result, folder)
+    return result, request.out
+
+
+class _Run:
+    """The parts of one run, connected."""
+
+    def __init__(
+        self,
+        request: RunRequest,
+        road_map: RoadMap,
+        simulation: Simulation,
+        camera: Camera | None,
+        sensors: np.random.Generator,
+    ) -> None:
+        self._request = request
+        self._recognitions: list[Recognition] = []
+        footprint = camera.footprint() if camera is not None else None
+        self._scorer = Scorer(road_map, simulation, footprint)
+        vehicles = _Vehicles(simulation, self._scorer.observe_frame)
+        world = World(road_map, vehicles, camera, sensors)
+        outputs = ("cars", "recognised_turns", "recognised_overtakes")
+        self._system = MonitoringSystem(world, _parameters(request), outputs)
+        network = self._system.network
+        network.subscribe("cars", self._scorer.observe_cars)
+        network.subscribe("recognised_turns", self._note)
+        network.subscribe("recognised_overtakes", self._note)
+
+    def complete(self, on_progress: OnProgress) -> RunResult:
+        """Run to the end and judge what was recognised."""
+        request = self._request
+        duration = request.scenario.duration
+        kernel = self._system.network.kernel
+        began = time.perf_counter()
+        kernel.run(TimePoint(duration), lambda now: on_progress(now / SECOND, duration / SECOND))
+        wall = time.perf_counter() - began
+        self._recognitions.sort(key=lambda recognition: (recognition.begin, recognition.end))
+        verdict = self._scorer.judge(self._recognitions)
+        stages = {str(label): account.seconds for label, account in kernel.accounts.items()}
+        return RunResult(
+            scenario=request.scenario.name,
+            settings=_settings(request),
+            recognitions=verdict.recognitions,
+            missed=verdict.missed,
+            score=verdict.score,
+            timing=Timing(
+                simulated_s=duration / SECOND,
+                wall_s=wall,
+                real_time_factor=duration / SECOND / wall,
+                stages=stages,
+            ),
+        )
+
+    def _note(self, sample: Sample[tuple[Recognition, ...]]) -> None:
+        self._recognitions.extend(sample.value)
+
+
+class _Vehicles:
+    """The source of the simulator's vehicles; shows each frame to an observer as well."""
+
+    def __init__(self, simulation: Simulation, observe: Callable[[Frame], None]) -> None:
+        self._simulation = simulation
+        self._observe = observe
+
+    def samples(self) -> Iterator[Sample[Table]]:
+        """Yield the vehicles of each frame, available at once."""
+        while (frame := self._simulation.step()) is not None:
+            self._observe(frame)
+            yield Sample(frame.vehicles, frame.time, frame.time)
+
+
+def _parameters(request: RunRequest) -> dict[str, object]:
+    return {
+        "view": str(request.view),
+        "sample_period": request.sample_period / MILLISECOND,
+        "position_noise": request.position_noise,
+    }
+
+
+def _settings(request: RunRequest) -> dict[str, str | int | float | None]:
+    is_truth = request.view is View.TRUTH
+    return {
+        "view": str(request.view),
+        "seed": request.seed,
+        "sample period ms": request.sample_period / MILLISECOND,
+        "position noise m": request.position_noise if is_truth else None,
+        "duration s": request.scenario.duration / SECOND,
+    }
+
+
+def _camera(settings: CameraSettings | None, road_map: RoadMap) -> Camera:
+    if settings is None:
+        raise ScenarioError("the scenario has no camera")
+    if isinstance(settings.look_at, str):
+        x, y = _centre(settings.look_at, road_map)
+    else:
+        x, y = settings.look_at
+    calibration = Calibration.from_field_of_view(
+        width=settings.width,
+        height=settings.height,
+        horizontal=math.radians(settings.field_of_view),
+    )
+    heading = math.radians(90.0 - settings.heading)
+    return Camera.looking_at(x, y, settings.altitude, heading=heading, calibration=calibration)
+
+
+def _centre(junction: str, road_map: RoadMap) -> tuple[float, float]:
+    x, y = road_map.crossing_centre(road_map.crossing_index(junction))
+    return float(x), float(y)
