@@ -3,8 +3,8 @@
 Read in this order: `geometry` (polylines), `parts` (a network in plain parts), `stretches` and
 `topology` (which junctions are crossings, which edges make a link), `graph` (directed roads),
 `turns` (left, right, straight, back), `links` (positions along links), `regions` (areas),
-`markings`, `roads` (the `RoadMap`), `assembling` (from parts to map), `reading` (SUMO networks),
-`building` (made-up ones), `errors`.
+`markings`, `roads` (the `RoadMap`), `assembling` (from parts to map), `checking` and `reading`
+(SUMO networks), `building` (made-up ones), `errors`.
 """
 
 from networks.errors import NetworkError, NetworkFileError, UnknownPlaceError

@@ -17,6 +17,7 @@ __all__ = [
     "Polylines",
     "first_least",
     "group_ranges",
+    "has_length",
     "middle_line",
     "offset_line",
     "resampled",
@@ -63,13 +64,17 @@ def first_least(values: Floats, group: npt.NDArray[np.intp]) -> npt.NDArray[np.i
     return candidates[np.searchsorted(candidates, starts)]
 
 
+def has_length(line: Points) -> bool:
+    """Tell whether *line* has two different points."""
+    return bool(np.any(np.hypot(*np.diff(line, axis=0).T) > _SAME_POINT))
+
+
 def without_repetitions(line: Points) -> Points:
     """Return *line* without points that repeat the one before; at least two points remain."""
-    steps = np.hypot(*np.diff(line, axis=0).T)
-    kept = np.concatenate(([True], steps > _SAME_POINT))
-    if not kept[1:].any():
+    if not has_length(line):
         raise ValueError("a line needs two different points")
-    return line[kept]
+    steps = np.hypot(*np.diff(line, axis=0).T)
+    return line[np.concatenate(([True], steps > _SAME_POINT))]
 
 
 def resampled(line: Points, fractions: Floats) -> Points:

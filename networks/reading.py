@@ -1,22 +1,19 @@
 """Read a SUMO road network file.
 
-sumolib reads the network. What it does not tell, this module finds out itself with a first pass
-over the XML: where in the file a fault is, and whether one drives on the left (the attribute
-`lefthand` of `<net>`).
+sumolib reads the network, after `networks.checking` has looked for what would confuse it.
 """
 
-import gzip
 from collections.abc import Iterable, Mapping
 from pathlib import Path
-from typing import IO, Any
-from xml.parsers import expat
+from typing import Any
 
 import numpy as np
 import sumolib
 
 from networks.assembling import road_map_from_parts
+from networks.checking import check_network_file
 from networks.errors import NetworkFileError
-from networks.geometry import Points
+from networks.geometry import Points, has_length
 from networks.parts import Connection, Edge, Junction, Lane, NetworkParts
 from networks.roads import RoadMap
 
@@ -38,15 +35,6 @@ _VEHICLE_CLASSES = frozenset(
 )
 """Who must be allowed on a lane for it to be one: no rails, footpaths or cycleways."""
 
-_REQUIRED = {
-    "edge": ("id",),
-    "lane": ("id", "index", "speed", "length", "shape"),
-    "junction": ("id", "type", "x", "y", "incLanes", "intLanes"),
-    "connection": ("from", "to", "fromLane", "toLane", "dir", "state"),
-}
-_FEWEST_POINTS = 2
-_GZIP_MAGIC = b"\x1f\x8b"
-
 
 def read_road_map(path: Path | str) -> RoadMap:
     """Return the map of a SUMO network, `.net.xml` or `.net.xml.gz`.
@@ -65,7 +53,7 @@ def read_network_parts(path: Path | str) -> NetworkParts:
         NetworkFileError: As for `read_road_map`.
     """
     file = Path(path)
-    left_hand = _first_pass(file)
+    left_hand = check_network_file(file).left_hand
     try:
         net: Any = sumolib.net.readNet(str(file), withInternal=True, withFoes=False, lxml=False)
     except (ArithmeticError, AttributeError, LookupError, TypeError, ValueError) as fault:
@@ -77,7 +65,7 @@ def read_network_parts(path: Path | str) -> NetworkParts:
 
 
 def _parts(net: Any, *, left_hand: bool) -> NetworkParts:
-    normal = [edge for edge in net.getEdges() if edge.getFunction() in ("", "normal")]
+    normal = [edge for edge in net.getEdges() if edge.getFunction() == ""]
     edges = {edge.id: edge for edge in map(_edge, normal) if edge.lanes}
     ends = dict.fromkeys(end for edge in edges.values() for end in (edge.start, edge.end))
     return NetworkParts(
@@ -107,7 +95,11 @@ def _shape(lane: Any) -> Points:
 
 
 def _is_for_vehicles(lane: Any) -> bool:
-    return not _VEHICLE_CLASSES.isdisjoint(lane.getPermissions())
+    return not _VEHICLE_CLASSES.isdisjoint(lane.getPermissions()) and _has_length(lane)
+
+
+def _has_length(lane: Any) -> bool:
+    return has_length(_shape(lane))
 
 
 def _connections(net: Any, edges: list[Any], usable: Mapping[str, Edge]) -> Iterable[Connection]:
@@ -122,7 +114,7 @@ def _connections(net: Any, edges: list[Any], usable: Mapping[str, Edge]) -> Iter
                     yield Connection(
                         edge.getID(),
                         to_edge.getID(),
-                        tuple(_lane(lane) for lane in inside),
+                        tuple(_lane(lane) for lane in inside if _has_length(lane)),
                         tuple(lane.getEdge().getID() for lane in inside),
                     )
 
@@ -133,109 +125,9 @@ def _lanes_inside(net: Any, connection: Any) -> list[Any]:
     via = connection.getViaLaneID()
     while via:
         lane = net.getLane(via)
+        if lane in lanes:
+            break
         lanes.append(lane)
         onward = lane.getOutgoing()
         via = onward[0].getViaLaneID() if onward else ""
     return lanes
-
-
-class _FirstPass:
-    """Checks what sumolib takes for granted, while the place in the file is known."""
-
-    def __init__(self, path: Path) -> None:
-        self._path = path
-        self._parser = expat.ParserCreate()
-        self._parser.StartElementHandler = self._start
-        self._root = ""
-        self._lanes_of_edge: dict[str, int] = {}
-        self._edge = ""
-        self.left_hand = False
-
-    def run(self, source: IO[bytes] | gzip.GzipFile) -> None:
-        try:
-            self._parser.ParseFile(source)
-        except expat.ExpatError as fault:
-            message = f"broken XML: {expat.ErrorString(fault.code)}"
-            raise NetworkFileError(
-                self._path, message, line=fault.lineno, column=fault.offset + 1
-            ) from fault
-
-    def _fail(self, fault: str) -> NetworkFileError:
-        line, column = self._parser.CurrentLineNumber, self._parser.CurrentColumnNumber
-        return NetworkFileError(self._path, fault, line=line, column=column + 1)
-
-    def _start(self, name: str, attributes: dict[str, str]) -> None:
-        if not self._root:
-            self._check_root(name, attributes)
-            return
-        if name == "junction" and attributes.get("type") == "internal":
-            return
-        for wanted in _REQUIRED.get(name, ()):
-            if wanted not in attributes:
-                raise self._fail(f"expected an attribute '{wanted}' of <{name}>")
-        match name:
-            case "edge":
-                self._enter_edge(attributes)
-            case "lane":
-                self._check_lane(attributes)
-            case "connection":
-                self._check_connection(attributes)
-            case _:
-                pass
-
-    def _check_root(self, name: str, attributes: dict[str, str]) -> None:
-        if name != "net":
-            raise self._fail(f"expected a SUMO network <net>, found <{name}>")
-        if "version" not in attributes:
-            raise self._fail("expected an attribute 'version' of <net>")
-        self._root = name
-        self.left_hand = attributes.get("lefthand", "false") in ("1", "true", "yes", "on", "x")
-
-    def _enter_edge(self, attributes: dict[str, str]) -> None:
-        self._edge = attributes["id"]
-        if self._edge in self._lanes_of_edge:
-            raise self._fail(f"edge '{self._edge}' is declared twice")
-        self._lanes_of_edge[self._edge] = 0
-        if not attributes.get("function"):
-            for wanted in ("from", "to"):
-                if wanted not in attributes:
-                    raise self._fail(f"expected an attribute '{wanted}' of edge '{self._edge}'")
-
-    def _check_lane(self, attributes: dict[str, str]) -> None:
-        self._lanes_of_edge[self._edge] = self._lanes_of_edge.get(self._edge, 0) + 1
-        corners = attributes["shape"].split()
-        try:
-            numbers = [[float(part) for part in corner.split(",")] for corner in corners]
-        except ValueError as fault:
-            raise self._fail(
-                f"expected numbers x,y in the shape of lane '{attributes['id']}'"
-            ) from fault
-        if len(numbers) < _FEWEST_POINTS or not all(len(n) in (2, 3) for n in numbers):
-            raise self._fail(f"expected two or more points x,y as shape of '{attributes['id']}'")
-
-    def _check_connection(self, attributes: dict[str, str]) -> None:
-        for end, lane in (("from", "fromLane"), ("to", "toLane")):
-            edge = attributes[end]
-            if edge not in self._lanes_of_edge:
-                raise self._fail(f"the connection refers to edge '{edge}', which is not declared")
-            index = attributes[lane]
-            if not index.isdigit() or int(index) >= self._lanes_of_edge[edge]:
-                raise self._fail(
-                    f"the connection refers to lane {index} of edge '{edge}', "
-                    f"which has {self._lanes_of_edge[edge]}"
-                )
-
-
-def _first_pass(path: Path) -> bool:
-    """Check the file and tell whether it is a network where one drives on the left."""
-    checks = _FirstPass(path)
-    try:
-        with path.open("rb") as raw:
-            packed = raw.read(len(_GZIP_MAGIC)) == _GZIP_MAGIC
-        with gzip.open(path) if packed else path.open("rb") as source:
-            checks.run(source)
-    except FileNotFoundError as fault:
-        raise NetworkFileError(path, "no such file") from fault
-    except (OSError, EOFError) as fault:
-        raise NetworkFileError(path, f"cannot be read: {fault}") from fault
-    return checks.left_hand

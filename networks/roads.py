@@ -67,7 +67,7 @@ class Lanes:
     opposite: Indices
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
+@dataclass(frozen=True, kw_only=True, eq=False, repr=False)
 class RoadMap:
     """A road network with all that is asked about it; never changed after it is made.
 
@@ -99,6 +99,10 @@ class RoadMap:
     turns: Turns
     markings: tuple[Marking, ...]
     left_hand: bool
+
+    def __repr__(self) -> str:
+        counts = f"{len(self.roads)} roads, {len(self.links)} links"
+        return f"RoadMap({counts}, {len(self.crossings)} crossings)"
 
     @property
     def roads(self) -> tuple[str, ...]:
@@ -192,8 +196,8 @@ class RoadMap:
     def match(self, points: Points, velocity: Points, max_distance: float) -> Indices:
         """Return the road on which each point most probably travels, or -1.
 
-        The road is that of the lane with the least cost: distance from its centre line, and for
-        moving points up to 20 m more the more the direction of travel differs from the lane's.
+        The road is that of the piece of a lane with the least cost: distance from its centre line,
+        and for moving points up to 20 m more the more the direction of travel differs from it.
         So one who overtakes on the lane of the other direction keeps to the own road.
 
         Args:
