@@ -17,6 +17,7 @@ from traffic.features.stability import UNKNOWN
 __all__ = ["Changes"]
 
 _NONE = -1
+_ARGUMENTS = ("first", "second")
 
 
 class Changes:
@@ -63,28 +64,28 @@ class Changes:
 
     def _events(self, table: Table, time: TimePoint) -> Iterator[Event]:
         last = self._last
-        gone = last.select(positions_of(last.ids, table.ids) < 0)
         before = positions_of(table.ids, last.ids)
+        gone = last.select(positions_of(last.ids, table.ids) < 0)
         for name in table.columns:
-            if name in {"first", "second"}:
+            if name in _ARGUMENTS:
                 continue
-            new = _codes(table[name])
-            old = _codes(last[name])[before] if name in last else np.full(len(new), UNKNOWN)
-            old = np.where(before >= 0, old, UNKNOWN)
-            changed = np.flatnonzero(new != old)
-            yield from self._changes(table.select(changed), name, old[changed], new[changed], time)
+            old = np.full(len(table), UNKNOWN)
             if name in last:
-                known = gone.select(_codes(gone[name]) != UNKNOWN)
-                unknown = np.full(len(known), UNKNOWN)
-                yield from self._changes(known, name, _codes(known[name]), unknown, time)
+                old[before >= 0] = _codes(last[name])[before[before >= 0]]
+                yield from self._changes(gone, name, _codes(gone[name]), UNKNOWN, time)
+            yield from self._changes(table, name, old, _codes(table[name]), time)
 
     def _changes(
-        self, table: Table, name: str, old: Column, new: Column, time: TimePoint
+        self, table: Table, name: str, old: Column, new: Column | int, time: TimePoint
     ) -> Iterator[Event]:
+        changed = np.flatnonzero(old != new)
+        rows = (
+            self._arguments(table.select(changed)),
+            old[changed].tolist(),
+            np.broadcast_to(new, len(old))[changed].tolist(),
+        )
         attribute = f"{self._of}.{name}"
-        for arguments, was, becomes in zip(
-            self._arguments(table), old.tolist(), new.tolist(), strict=True
-        ):
+        for arguments, was, becomes in zip(*rows, strict=True):
             yield Event(
                 attribute, arguments, self._value(name, was), self._value(name, becomes), time
             )

@@ -1,0 +1,70 @@
+"""What users ask for on the command line."""
+
+from pathlib import Path
+
+import pytest
+
+from dyknow.time import MILLISECOND, SECOND
+from traffic.errors import RequestError, ScenarioError
+from traffic.request import RunRequest, View
+
+
+def test_a_bundled_name_is_enough():
+    """Everything else has a default."""
+    request = RunRequest.from_texts(scenario="crossing")
+
+    assert request.view is View.VISION
+    assert request.sample_period == 100 * MILLISECOND
+    assert request.scenario.step_length == 40 * MILLISECOND
+
+
+@pytest.mark.parametrize(
+    ("period", "step"),
+    [("100", 100), ("200 ms", 100), ("50", 50), ("250", 50), ("1.5 s", 100), ("110", 55)],
+)
+def test_the_simulator_steps_as_far_as_the_period_allows(period, step):
+    """Without cameras the step is the longest part of the period up to 100 ms."""
+    request = RunRequest.from_texts(scenario="crossing", view="truth", sample_period=period)
+
+    assert request.scenario.step_length == step * MILLISECOND
+
+
+def test_duration_and_camera_of_the_scenario_can_be_replaced():
+    """What the command line says wins over the scenario."""
+    request = RunRequest.from_texts(scenario="crossing", duration="7 s", look_at="-3,4.5")
+
+    assert request.scenario.duration == 7 * SECOND
+    assert request.scenario.camera is not None
+    assert request.scenario.camera.look_at == (-3.0, 4.5)
+
+
+@pytest.mark.parametrize(
+    ("options", "message"),
+    [
+        ({}, "either a scenario or --sumocfg, found 'neither'"),
+        ({"scenario": "crossing", "sumocfg": Path("x")}, "found 'both'"),
+        ({"view": "sonar"}, "--view: expected 'vision' or 'truth', found 'sonar'"),
+        ({"position_noise": 2.0}, "--position-noise: expected nothing"),
+        ({"position_noise": -2.0, "view": "truth"}, "at least 0, found '-2.0'"),
+        ({"look_at": "centre", "view": "truth"}, "--look-at: expected nothing"),
+        ({"overlay": Path("x.mp4"), "view": "truth"}, "--overlay: expected nothing"),
+        ({"sample_period": "fast"}, "--sample-period: expected a duration"),
+        ({"sample_period": "25"}, "--sample-period: expected a multiple of 10 ms"),
+        ({"duration": "0"}, "--duration: expected a duration above zero"),
+        ({"duration": "3 fortnights"}, "--duration: expected a duration"),
+        ({"seed": -1}, "--seed: expected a number of at least 0"),
+    ],
+)
+def test_impossible_requests_say_what_was_expected_and_found(options, message):
+    """Each fault of the command line names the option, the expectation and the finding."""
+    defaults = {} if message.endswith("'neither'") else {"scenario": "crossing"}
+
+    with pytest.raises(RequestError) as caught:
+        RunRequest.from_texts(**{**defaults, **options})
+    assert message in str(caught.value)
+
+
+def test_an_unknown_scenario_is_answered_with_the_nearest_name():
+    """A misspelt name is recognised."""
+    with pytest.raises(ScenarioError, match="did you mean 'crossing'"):
+        RunRequest.from_texts(scenario="crosing")
