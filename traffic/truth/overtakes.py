@@ -74,13 +74,10 @@ class OvertakeWatcher:
 
     def observe(self, time: TimePoint, vehicles: Table, places: TruePlaces) -> list[TrueOvertake]:
         """Take in a frame and return the overtakes that end in it."""
-        before, now = self._pairs, _near_pairs(time, vehicles, places)
-        at = np.searchsorted(before.key, now.key)
-        at = np.minimum(at, max(len(before.key) - 1, 0))
-        known = before.key[at] == now.key if len(before.key) else np.zeros(len(at), dtype=np.bool_)
-        before = before.take(at) if len(before.key) else now
+        now = _near_pairs(time, vehicles, places)
+        before, known = _matched(self._pairs, now)
         ended = self._ended(time, before, now, known)
-        found = list(_overtakes(time, before, now, np.flatnonzero(ended), places))
+        found = list(_overtakes(time, before, now, np.flatnonzero(ended)))
         self._pairs = _carried(before, now, known)
         return found
 
@@ -100,7 +97,7 @@ class _Pairs:
 
     Attributes:
         key: The smaller id, shifted, and the larger.
-        first: Row of the vehicle with the smaller id.
+        way: The link of both, doubled, and 1 more if they travel along it.
         order: 1 if the vehicle with the larger id is in front, -1 if it is behind, 0 beside.
         since: The last frame in which one of them was in front.
         moving: Whether both have been moving since then.
@@ -109,7 +106,7 @@ class _Pairs:
     """
 
     key: npt.NDArray[np.int64]
-    first: Positions
+    way: npt.NDArray[np.int64]
     order: npt.NDArray[np.int8]
     since: npt.NDArray[np.int64]
     moving: npt.NDArray[np.bool_]
@@ -121,19 +118,39 @@ class _Pairs:
         """Return no pairs."""
         none = np.empty(0, dtype=np.int64)
         empty = np.empty(0)
-        return cls(none, none, none.astype(np.int8), none, none.astype(np.bool_), empty, empty)
+        return cls(
+            none,
+            none,
+            none.astype(np.int8),
+            none,
+            none.astype(np.bool_),
+            empty,
+            empty,
+        )
 
     def take(self, rows: Positions) -> "_Pairs":
         """Return the pairs at *rows*."""
         return _Pairs(
             self.key[rows],
-            self.first[rows],
+            self.way[rows],
             self.order[rows],
             self.since[rows],
             self.moving[rows],
             self.gap[rows],
             self.aside[rows],
         )
+
+
+def _matched(before: _Pairs, now: _Pairs) -> tuple[_Pairs, npt.NDArray[np.bool_]]:
+    """Return, row by row of *now*, the same pair before, and whether there is one.
+
+    A pair that was on another link, or travelled the other way, is not the same.
+    """
+    if not len(before.key):
+        return now, np.zeros(len(now.key), dtype=np.bool_)
+    at = np.minimum(np.searchsorted(before.key, now.key), len(before.key) - 1)
+    matched = before.take(at)
+    return matched, (matched.key == now.key) & (matched.way == now.way)
 
 
 def _near_pairs(time: TimePoint, vehicles: Table, places: TruePlaces) -> _Pairs:
@@ -149,7 +166,7 @@ def _near_pairs(time: TimePoint, vehicles: Table, places: TruePlaces) -> _Pairs:
     key = ids[first] << _KEY_SHIFT | ids[second]
     pairs = _Pairs(
         key=key,
-        first=first,
+        way=_ways(places)[first],
         order=np.where(clear, np.where(larger_in_front, 1, -1), 0).astype(np.int8),
         since=np.full(len(key), time, dtype=np.int64),
         moving=fast[first] & fast[second],
@@ -162,17 +179,22 @@ def _near_pairs(time: TimePoint, vehicles: Table, places: TruePlaces) -> _Pairs:
 def _neighbours(places: TruePlaces) -> tuple[Positions, Positions]:
     """Return the rows of all pairs within reach: those behind, and those in front of them."""
     (rows,) = np.nonzero((places.link >= 0) & np.isfinite(places.progress))
-    lane = places.link[rows].astype(np.int64) * 2 + (places.direction[rows] > 0)
-    order = np.lexsort((places.progress[rows], lane))
-    rows, lane, progress = rows[order], lane[order], places.progress[rows[order]]
+    way = _ways(places)[rows]
+    order = np.lexsort((places.progress[rows], way))
+    rows, way, progress = rows[order], way[order], places.progress[rows[order]]
     behind, in_front = [rows[:0]], [rows[:0]]
     for shift in range(1, len(rows)):
-        near = (lane[shift:] == lane[:-shift]) & (progress[shift:] - progress[:-shift] <= _REACH)
+        near = (way[shift:] == way[:-shift]) & (progress[shift:] - progress[:-shift] <= _REACH)
         if not near.any():
             break
         behind.append(rows[:-shift][near])
         in_front.append(rows[shift:][near])
     return np.concatenate(behind), np.concatenate(in_front)
+
+
+def _ways(places: TruePlaces) -> npt.NDArray[np.int64]:
+    ways: npt.NDArray[np.int64] = places.link.astype(np.int64) * 2 + (places.direction > 0)
+    return ways
 
 
 def _aside(vehicles: Table, first: Positions, second: Positions) -> Floats:
@@ -191,7 +213,7 @@ def _carried(before: _Pairs, now: _Pairs, known: npt.NDArray[np.bool_]) -> _Pair
     closer = now.gap <= before.gap
     return _Pairs(
         key=now.key,
-        first=now.first,
+        way=now.way,
         order=np.where(beside, before.order, now.order),
         since=np.where(beside, before.since, now.since),
         moving=np.where(beside, before.moving & now.moving, now.moving),
@@ -201,11 +223,7 @@ def _carried(before: _Pairs, now: _Pairs, known: npt.NDArray[np.bool_]) -> _Pair
 
 
 def _overtakes(
-    time: TimePoint,
-    before: _Pairs,
-    now: _Pairs,
-    ended: Positions,
-    places: TruePlaces,
+    time: TimePoint, before: _Pairs, now: _Pairs, ended: Positions
 ) -> Iterator[TrueOvertake]:
     for row in ended:
         pair = (int(now.key[row] >> _KEY_SHIFT), int(now.key[row]) & ((1 << _KEY_SHIFT) - 1))
@@ -215,7 +233,7 @@ def _overtakes(
         yield TrueOvertake(
             overtaker=pair[was_behind],
             overtaken=pair[1 - was_behind],
-            link=int(places.link[now.first[row]]),
+            link=int(now.way[row]) // 2,
             begin=TimePoint(int(before.since[row])),
             end=time,
             side=Side.LEFT if larger_is_left == (was_behind == 1) else Side.RIGHT,
