@@ -138,14 +138,18 @@ class _Checker:
         if unit.text not in known:
             nearest = nearest_name(unit.text, known)
             yield UnknownNameError("computational unit", unit.text, unit.span, nearest)
-        elif len(known[unit.text].inputs) != len(streams):
-            expected = len(known[unit.text].inputs)
-            yield ArityError(unit.text, expected, len(streams), unit.span)
         else:
-            inputs = zip(known[unit.text].inputs, streams, strict=True)
-            for number, (sort, stream) in enumerate(inputs, start=1):
-                yield from self._sort(f"argument {number} of '{unit.text}'", sort, stream)
+            yield from self._arguments(unit, known[unit.text].sorts_for(len(streams)), streams)
         yield from self._streams(streams)
+
+    def _arguments(
+        self, unit: Name, expected: tuple[Sort, ...], streams: tuple[StreamTerm, ...]
+    ) -> Faults:
+        if len(expected) != len(streams):
+            yield ArityError(unit.text, len(expected), len(streams), unit.span)
+            return
+        for number, (sort, stream) in enumerate(zip(expected, streams, strict=True), start=1):
+            yield from self._sort(f"argument {number} of '{unit.text}'", sort, stream)
 
     def _sort(self, what: str, expected: Sort, stream: StreamTerm) -> Faults:
         found = self._declared.sort_of(stream.provider)

@@ -25,6 +25,7 @@ __all__ = ["parse_specification", "parse_value"]
 
 _PHRASES = {
     "$END": "the end of the text",
+    "AND_MORE": "', ...'",
     "FORMULA": "a formula",
     "NAME": "a name",
     "NUMBER": "a number",
@@ -138,6 +139,9 @@ class _Leaves(Transformer[Token, Any]):
 
     TIME_WITH_UNIT = TIME
 
+    def AND_MORE(self, token: Token) -> bool:
+        return bool(token)
+
     def TRUTH(self, token: Token) -> bool:
         return str(token) == "true"
 
@@ -185,9 +189,8 @@ def _syntax_error(fault: UnexpectedInput, source: SourceText) -> KPLSyntaxError:
 
 
 def _start(fault: UnexpectedInput) -> int:
-    if isinstance(fault, UnexpectedToken):
-        return fault.token.start_pos or 0
-    return fault.pos_in_stream if isinstance(fault, UnexpectedCharacters) else 0
+    at = fault.token.start_pos if isinstance(fault, UnexpectedToken) else fault.pos_in_stream
+    return 0 if at is None else at
 
 
 def _expected(fault: UnexpectedInput) -> str:

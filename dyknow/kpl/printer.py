@@ -47,7 +47,8 @@ def _(node: syntax.SourceDeclaration) -> str:
 
 @_text.register
 def _(node: syntax.UnitDeclaration) -> str:
-    return f"compunit {_text(node.sort)} {node.name.text}({_list(node.inputs)})"
+    more = ", ..." if node.takes_more else ""
+    return f"compunit {_text(node.sort)} {node.name.text}({_list(node.inputs)}{more})"
 
 
 @_text.register

@@ -288,11 +288,25 @@ class SourceDeclaration(_Node):
 
 @dataclass(frozen=True)
 class UnitDeclaration(_Node):
-    """`compunit SORT NAME(SORT, ...)` (definition 4.4.5)."""
+    """`compunit SORT NAME(SORT, SORT)` (definition 4.4.5).
+
+    Attributes:
+        sort: Of the output.
+        name: The symbol.
+        inputs: The sorts of the inputs.
+        takes_more: Whether any number of further inputs of the last sort may follow, which is
+            written as `, ...`.
+    """
 
     sort: Sort
     name: Name
     inputs: tuple[Sort, ...]
+    takes_more: bool = False
+
+    def sorts_for(self, count: int) -> tuple[Sort, ...]:
+        """Return the sorts of *count* inputs, or of as many as the unit takes."""
+        more = max(0, count - len(self.inputs)) if self.takes_more else 0
+        return self.inputs + more * self.inputs[-1:]
 
 
 @dataclass(frozen=True)
