@@ -1,1 +1,23 @@
-"""To be described."""
+"""Metric temporal logic over streams of states: the language, its meaning, and progression.
+
+Read in this order: `syntax`, `grammar.lark`, `parser`, `printer`, `check`, `quantifiers`,
+`semantics`, `columns`, `instants`, `graph`, `residuals`, `wording`, `progression`, `monitors`.
+"""
+
+from dyknow.mtl.columns import evaluate_atoms
+from dyknow.mtl.monitors import Monitor, MonitorColumns
+from dyknow.mtl.parser import parse_formula
+from dyknow.mtl.printer import text_from_formula
+from dyknow.mtl.progression import ProgressionTable
+from dyknow.mtl.syntax import Formula, Verdict
+
+__all__ = [
+    "Formula",
+    "Monitor",
+    "MonitorColumns",
+    "ProgressionTable",
+    "Verdict",
+    "evaluate_atoms",
+    "parse_formula",
+    "text_from_formula",
+]

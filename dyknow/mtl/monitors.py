@@ -75,9 +75,56 @@ class MonitorColumns:
 
     @property
     def verdicts(self) -> Verdicts:
-        """shape (n,), int8: the present verdict of each row."""
+        """The present verdict of each row, shape (n,), int8."""
         return self.table.verdicts(self.residuals)
 
     def residual(self, row: int) -> Formula:
         """Return what must hold from now on in one row."""
         return self.table.residual(int(self.residuals[row]))
+
+
+class Monitor:
+    """One formula followed along one stream of states.
+
+    Attributes:
+        table: The formula and its residuals; may be shared with other monitors.
+        residuals: shape (1,), the number of the residual in *table*.
+    """
+
+    def __init__(self, formula: Formula | ProgressionTable) -> None:
+        if not isinstance(formula, ProgressionTable):
+            formula = ProgressionTable(formula)
+        self.table: ProgressionTable = formula
+        self.residuals: npt.NDArray[np.int64] = np.array([self.table.initial], dtype=np.int64)
+        self._time: TimePoint | None = None
+        self.table.register(self)
+
+    def step(self, now: TimePoint, state: Mapping[str, Any]) -> Verdict:
+        """Take in the state at *now*, later than the one before, and return the verdict.
+
+        Args:
+            now: The time of the state.
+            state: The features by their printed terms; more than needed may be given.
+
+        Raises:
+            FeatureError: A feature is missing, of the wrong kind, or NaN.
+        """
+        elapsed = Duration(1) if self._time is None else Duration(now - self._time)
+        if elapsed <= 0:
+            raise ValueError(f"states must be in order of time: {now} ns after {self._time} ns")
+        bits = self.table.columns.of_state(state)
+        number = self.table.successor(int(self.residuals[0]), bits, elapsed)
+        self.residuals[0] = number
+        self._time = now
+        self.table.collect_when_full()
+        return self.verdict
+
+    @property
+    def verdict(self) -> Verdict:
+        """The present verdict."""
+        return Verdict(int(self.table.verdicts(self.residuals)[0]))
+
+    @property
+    def residual(self) -> Formula:
+        """What must hold from now on."""
+        return self.table.residual(int(self.residuals[0]))

@@ -195,9 +195,9 @@ def _syntax_error(error: UnexpectedInput, source: SourceText) -> FormulaSyntaxEr
             at = Span(source, token.start_pos or 0, token.end_pos or end)
             return _expected(error.accepts or error.expected, f"'{token}'", at)
         case UnexpectedCharacters():
-            at = error.pos_in_stream or 0
-            found = f"'{source.text[at]}'"
-            return _expected(error.allowed, found, Span(source, at, at + 1))
+            offset: Any = error.pos_in_stream
+            found = f"'{source.text[offset]}'"
+            return _expected(error.allowed, found, Span(source, offset, offset + 1))
         case _:
             return FormulaSyntaxError(f"expected a formula: {error}", Span(source, 0, end))
 

@@ -1,0 +1,231 @@
+"""Progression of one formula for many objects at once, by tables that are filled in lazily.
+
+Residuals are numbered. A step looks up, for each object, (residual, truth of the atoms) in the
+table for the time that has elapsed, and only pairs that no object has shown before are worked
+out (`dyknow.mtl.residuals`). With steady sampling the tables are soon complete and a step is one
+`numpy.take`; with irregular sampling each elapsed time has a table of its own, of which the
+last few are kept.
+"""
+
+from collections import OrderedDict
+from typing import Protocol
+from weakref import WeakSet
+
+import numpy as np
+import numpy.typing as npt
+
+from dyknow.mtl.check import check
+from dyknow.mtl.columns import AtomColumns
+from dyknow.mtl.graph import FormulaGraph
+from dyknow.mtl.residuals import Progression, Residual
+from dyknow.mtl.syntax import FALSE, TRUE, Atom, Formula, Verdict
+from dyknow.mtl.wording import formula_from_residual
+from dyknow.time import Duration
+
+__all__ = ["Holder", "ProgressionTable", "Residuals", "Truths", "Verdicts"]
+
+Residuals = npt.NDArray[np.int64]
+Truths = npt.NDArray[np.bool_]
+Verdicts = npt.NDArray[np.int8]
+
+_FALSE, _TRUE, _INITIAL = 0, 1, 2
+_CELLS = 1 << 21
+_MOST_TABULATED_ATOMS = 8
+_UNKNOWN = -1
+_NO_TABLE = np.empty(0, dtype=np.int64)
+
+
+class Holder(Protocol):
+    """Something that holds numbers of residuals, which a table may change."""
+
+    residuals: Residuals
+
+
+class ProgressionTable:
+    """The residuals of one formula and how they follow from one another.
+
+    A residual says what must hold after the last state. Numbers 0 and 1 stand for false and
+    true. A table may be shared; when it holds more than *limit* residuals, `collect_when_full`
+    forgets those that no registered holder has, and renumbers the others. Memory is bounded by
+    the residuals that are held at one time, or *limit* if that is more, and 16 MB of tables (or
+    those of one elapsed time, if that is more).
+
+    Attributes:
+        formula: The formula.
+        atoms: Its boolean features and comparisons, in the order in which `progress` wants
+            their truth.
+        columns: The same, ready to be evaluated over columns.
+        initial: The number of the residual before the first state.
+        limit: How many residuals are kept before unused ones are forgotten.
+    """
+
+    def __init__(self, formula: Formula, limit: int = 1 << 16) -> None:
+        """Make the table.
+
+        Raises:
+            SpecificationErrors: An interval ends before it begins, or the like.
+            ValueError: There is a quantifier in the formula; see `dyknow.mtl.quantifiers`.
+        """
+        check(formula)
+        self._graph = graph = FormulaGraph(formula)
+        self.formula = formula
+        self.atoms: tuple[Atom, ...] = graph.atoms
+        self.columns = AtomColumns(self.atoms)
+        self.initial = _INITIAL
+        self.limit = limit
+        self._progression = Progression(graph)
+        self._width = 1 << len(self.atoms)
+        self._holders: WeakSet[Holder] = WeakSet()
+        self._forget_all()
+
+    def _forget_all(self) -> None:
+        self._residuals: list[Residual | None] = [None, None, None]
+        self._number: dict[Residual, int] = {}
+        self._tables: OrderedDict[int, npt.NDArray[np.int64]] = OrderedDict()
+        self._memory: dict[tuple[int, int, int], int] = {}
+
+    def __len__(self) -> int:
+        """Return how many residuals are known, true, false, and the initial one included."""
+        return len(self._residuals)
+
+    def register(self, holder: Holder) -> None:
+        """Keep the residuals of *holder* when others are forgotten, as long as it lives."""
+        self._holders.add(holder)
+
+    def progress(
+        self,
+        residuals: Residuals,
+        truth: Truths,
+        elapsed: Duration | npt.NDArray[np.int64],
+    ) -> Residuals:
+        """Return what is left after a new state of each of n objects.
+
+        Args:
+            residuals: shape (n,), what was left after the state before.
+            truth: shape (n_atoms, n), the truth of the atoms in the new state.
+            elapsed: The time since the state before, at least one nanosecond, for all objects
+                or for each. It is ignored where no state has been seen.
+        """
+        if isinstance(elapsed, np.ndarray):
+            return self._progress_by_elapsed(residuals, truth, elapsed)
+        if elapsed < 1:
+            raise ValueError(f"expected a positive elapsed time, found {elapsed}")
+        if truth.shape != (len(self.atoms), len(residuals)):
+            expected = (len(self.atoms), len(residuals))
+            raise ValueError(f"expected truth of shape {expected}, found {truth.shape}")
+        if len(self.atoms) > _MOST_TABULATED_ATOMS:
+            return self._progress_sparsely(residuals, truth, elapsed)
+        keys = residuals * self._width
+        for number, values in enumerate(truth):
+            keys += values.astype(np.int64) << number
+        table = self._table(elapsed)
+        following = table.take(keys, mode="clip")
+        if len(following) and following.min() < 0:
+            table = self._fill(elapsed, np.unique(keys[following < 0]))
+            following = table.take(keys, mode="clip")
+        return following
+
+    def verdicts(self, residuals: Residuals) -> Verdicts:
+        """Return 1 where a residual is true, -1 where it is false, and 0 elsewhere."""
+        verdicts: Verdicts = (residuals == _TRUE).astype(np.int8)
+        verdicts -= residuals == _FALSE
+        return verdicts
+
+    def residual(self, number: int) -> Formula:
+        """Return a residual as a formula about the time after the last state.
+
+        An interval that reaches back before 0 speaks of instants that have been seen already
+        and at which the body is not decided yet.
+        """
+        residual = self._residuals[number]
+        if residual is None:
+            return (FALSE, TRUE, self.formula)[number]
+        return formula_from_residual(self._graph, self._progression, residual)
+
+    def collect_when_full(self) -> None:
+        """Forget residuals that no holder has, if there are more than `limit`."""
+        if len(self._residuals) <= self.limit:
+            return
+        kept = self._residuals
+        holders = list(self._holders)
+        self._forget_all()
+        new = np.zeros(len(kept), dtype=np.int64)
+        for number in np.unique(np.concatenate([h.residuals for h in holders])).tolist():
+            residual = kept[number]
+            new[number] = number if residual is None else self._number_of(residual)
+        for holder in holders:
+            holder.residuals = new[holder.residuals]
+        self.limit = max(self.limit, 2 * len(self._residuals))
+
+    def _progress_by_elapsed(
+        self, residuals: Residuals, truth: Truths, elapsed: npt.NDArray[np.int64]
+    ) -> Residuals:
+        following = np.empty_like(residuals)
+        for duration in np.unique(elapsed).tolist():
+            rows = elapsed == duration
+            following[rows] = self.progress(residuals[rows], truth[:, rows], Duration(duration))
+        return following
+
+    def successor(self, number: int, bits: int, elapsed: Duration) -> int:
+        """Return what `progress` returns, for one object; bit i of *bits* is atom number i."""
+        key = (number, bits, elapsed)
+        following = self._memory.get(key)
+        if following is None:
+            if len(self._memory) >= _CELLS // 8:
+                self._memory.clear()
+            following = self._memory[key] = self._compute(number, bits, elapsed)
+        return following
+
+    def _compute(self, number: int, bits: int, elapsed: int) -> int:
+        """Work out what is left of one residual after one state."""
+        if number in {_FALSE, _TRUE}:
+            return number
+        residual = self._residuals[number]
+        if residual is None:
+            return self._number_of(self._progression.first(bits))
+        return self._number_of(self._progression.next(residual, bits, Duration(elapsed)))
+
+    def _number_of(self, residual: Residual) -> int:
+        verdict = self._progression.verdict(residual)
+        if verdict is not Verdict.UNDECIDED:
+            return _TRUE if verdict is Verdict.TRUE else _FALSE
+        number = self._number.setdefault(residual, len(self._residuals))
+        if number == len(self._residuals):
+            self._residuals.append(residual)
+        return number
+
+    def _table(self, elapsed: int) -> npt.NDArray[np.int64]:
+        """Return the table for one elapsed time, long enough for all residuals."""
+        table = self._tables.pop(elapsed, _NO_TABLE)
+        missing = len(self._residuals) * self._width - len(table)
+        if missing > 0:
+            rows = np.full(missing + len(table), _UNKNOWN, dtype=np.int64)
+            table = np.concatenate((table, rows))
+            table[: 2 * self._width] = np.repeat((_FALSE, _TRUE), self._width)
+        self._tables[elapsed] = table
+        while len(self._tables) > 1 and sum(map(len, self._tables.values())) > _CELLS:
+            self._tables.popitem(last=False)
+        return table
+
+    def _fill(self, elapsed: int, keys: npt.NDArray[np.int64]) -> npt.NDArray[np.int64]:
+        table = self._tables[elapsed]
+        for key in keys.tolist():
+            number, bits = divmod(key, self._width)
+            table[key] = self._compute(number, bits, elapsed)
+        return table
+
+    def _progress_sparsely(
+        self, residuals: Residuals, truth: Truths, elapsed: Duration
+    ) -> Residuals:
+        """Progress a formula with so many atoms that a table would be mostly empty."""
+        rows = np.concatenate(
+            (
+                residuals[None].view(np.uint8).reshape(len(residuals), 8).T,
+                np.packbits(truth, axis=0, bitorder="little"),
+            )
+        )
+        pairs, places = np.unique(rows, axis=1, return_inverse=True)
+        numbers = pairs[:8].T.copy().view(np.int64).ravel().tolist()
+        bits = [int.from_bytes(column.tobytes(), "little") for column in pairs[8:].T]
+        following = [self.successor(k, b, elapsed) for k, b in zip(numbers, bits, strict=True)]
+        return np.array(following, dtype=np.int64)[places]

@@ -1,0 +1,318 @@
+"""What is left of a formula after some states, and how one more state changes it.
+
+The time model is `hold` (see `dyknow.mtl.semantics`). A new state brings two things: the state
+before it has held up to one nanosecond before the new one, and the new one holds at its own
+instant. Progression as in Heintz (2009), definition 7.5.3, would go through the instants one by
+one or in steps of a common divisor of all times; here whole intervals are taken at once, which
+is exact for any times. Therefore a residual is kept not as a formula but as what a formula
+would say:
+
+- for each operator `until` at the top level (an *anchor*), the instants that can still be its
+  witness; those at which the right side is known to be false are gone;
+- for each node below, the past instants at which it is known to be true or known to be false,
+  as far as an undecided operator above still asks for them.
+
+All instants are relative to the last state. Residuals that say the same are mostly equal, so
+that there are few of them; in particular they do not grow with the number of states.
+"""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+from dyknow.mtl.graph import (
+    TRUTH,
+    All,
+    FormulaGraph,
+    GraphNode,
+    Literal,
+    UntilNode,
+)
+from dyknow.mtl.instants import (
+    EMPTY,
+    FUTURE,
+    PAST,
+    Instants,
+    after,
+    before,
+    between,
+    both,
+    complement,
+    either,
+    first_from,
+    run_end,
+    shift,
+    until,
+    without,
+)
+from dyknow.mtl.syntax import Verdict
+from dyknow.time import Duration
+
+__all__ = ["Anchor", "Knowledge", "Progression", "Residual"]
+
+_NOW: Instants = (0, 1)
+
+
+@dataclass(frozen=True, slots=True)
+class Knowledge:
+    """The past instants at which a node is known to be true, and known to be false."""
+
+    true: Instants = EMPTY
+    false: Instants = EMPTY
+
+    def of(self, literal: Literal) -> "Knowledge":
+        """Return the same for a literal of the node."""
+        return Knowledge(self.false, self.true) if literal & 1 else self
+
+    def moved(self, by: int) -> "Knowledge":
+        """Return the same relative to an instant that lies *by* later."""
+        if not self.true and not self.false:
+            return self
+        return Knowledge(shift(self.true, -by), shift(self.false, -by))
+
+    def joined(self, true: Instants, false: Instants) -> "Knowledge":
+        """Return what is known here or there."""
+        return Knowledge(either(self.true, true), either(self.false, false))
+
+    def within(self, instants: Instants) -> "Knowledge":
+        """Forget all other instants."""
+        if not instants:
+            return _NOTHING
+        return Knowledge(both(self.true, instants), both(self.false, instants))
+
+
+_NOTHING = Knowledge()
+
+
+@dataclass(frozen=True, slots=True)
+class Anchor:
+    """An undecided operator at the top level.
+
+    Attributes:
+        witnesses: The instants at which the right side may still make it true.
+        left_from: The first instant at which the left side is not yet known to be true.
+    """
+
+    witnesses: Instants
+    left_from: int
+
+
+_AnchorState = Anchor | Verdict
+"""An anchor, or what has been decided; `UNDECIDED` where the others decide without it."""
+
+
+@dataclass(frozen=True, slots=True)
+class Residual:
+    """What is left of a formula.
+
+    Attributes:
+        anchors: For each operator or state formula at the top level, its state.
+        knowledge: For each node of the graph, what is known and still asked for.
+        held: For each node of the graph, whether it is a state formula that holds now.
+    """
+
+    anchors: tuple[_AnchorState, ...]
+    knowledge: tuple[Knowledge, ...]
+    held: tuple[bool, ...]
+
+
+class Progression:
+    """How the residuals of one formula follow from one another.
+
+    Attributes:
+        anchored: The operators and state formulas at the top level, as positive literals.
+    """
+
+    def __init__(self, graph: FormulaGraph) -> None:
+        self._graph = graph
+        self._nodes = list(enumerate(graph.nodes))
+        self.anchored = tuple(dict.fromkeys(self._top_level(graph.root)))
+        self._place = {literal: at for at, literal in enumerate(self.anchored)}
+
+    def _top_level(self, literal: Literal) -> Iterator[Literal]:
+        """Yield the nodes that say something about the first instant, as positive literals."""
+        number = literal >> 1
+        node = self._graph.nodes[number]
+        if isinstance(node, All) and self._graph.temporal[number]:
+            for inner in node.literals:
+                yield from self._top_level(inner)
+        else:
+            yield 2 * number
+
+    def first(self, bits: int) -> Residual:
+        """Return what is left after the first state, the atoms of which have the truth *bits*."""
+        held = self._graph.plain_values(bits)
+        anchors = tuple(self._first_anchor(literal >> 1, held) for literal in self.anchored)
+        nothing = (_NOTHING,) * len(self._nodes)
+        return self._looked_at(Residual(anchors, nothing, tuple(held)), held, EMPTY)
+
+    def _first_anchor(self, number: int, held: list[bool]) -> _AnchorState:
+        node = self._graph.nodes[number]
+        if isinstance(node, UntilNode):
+            end = FUTURE if node.most == FUTURE else node.most + 1
+            return Anchor(between(node.least, end), 0)
+        return Verdict.TRUE if held[number] else Verdict.FALSE
+
+    def next(self, residual: Residual, bits: int, elapsed: Duration) -> Residual:
+        """Return what is left after one more state.
+
+        Args:
+            residual: What was left after the state before.
+            bits: The truth of atom number i in bit i.
+            elapsed: The time since the state before, at least one nanosecond.
+        """
+        moved = Residual(
+            tuple(_moved(anchor, elapsed) for anchor in residual.anchors),
+            tuple(known.moved(elapsed) for known in residual.knowledge),
+            residual.held,
+        )
+        held = self._graph.plain_values(bits)
+        return self._looked_at(moved, held, between(1 - elapsed, 0))
+
+    def verdict(self, residual: Residual) -> Verdict:
+        """Return what is known about the whole formula."""
+        return self._value(self._graph.root, residual.anchors)
+
+    def _looked_at(self, moved: Residual, held: list[bool], interval: Instants) -> Residual:
+        """Take in what held over *interval* and what holds now."""
+        known = self._learnt(moved, held, interval)
+        anchors = tuple(
+            self._decided(literal >> 1, anchor, known)
+            for literal, anchor in zip(self.anchored, moved.anchors, strict=True)
+        )
+        relevant = set(self._relevant(self._graph.root, anchors))
+        anchors = tuple(
+            anchor if literal in relevant or isinstance(anchor, Verdict) else Verdict.UNDECIDED
+            for literal, anchor in zip(self.anchored, anchors, strict=True)
+        )
+        return self._remembered(anchors, known, held)
+
+    def _learnt(self, moved: Residual, held: list[bool], interval: Instants) -> list[Knowledge]:
+        """Return what is known about each node, from those without parts upwards."""
+        known: list[Knowledge] = []
+        for number, node in self._nodes:
+            if self._graph.temporal[number]:
+                true, false = _consequences(node, known)
+            else:
+                true = interval if moved.held[number] else EMPTY
+                true = either(true, _NOW if held[number] else EMPTY)
+                false = without(either(interval, _NOW), true)
+            known.append(moved.knowledge[number].joined(true, false))
+        return known
+
+    def _decided(self, number: int, anchor: _AnchorState, known: list[Knowledge]) -> _AnchorState:
+        """Return an anchor with the witnesses that are left, or what decides it."""
+        node = self._graph.nodes[number]
+        if isinstance(anchor, Verdict) or not isinstance(node, UntilNode):
+            return anchor
+        right = known[node.right >> 1].of(node.right)
+        witnesses = without(anchor.witnesses, right.false)
+        last_possible, left_from = FUTURE, FUTURE
+        if node.left != TRUTH:
+            left = known[node.left >> 1].of(node.left)
+            left_from = run_end(left.true, anchor.left_from)
+            last_possible = first_from(left.false, anchor.left_from)
+        witnesses = both(witnesses, between(PAST, _next(last_possible)))
+        if not witnesses:
+            return Verdict.FALSE
+        if both(both(right.true, witnesses), between(PAST, _next(left_from))):
+            return Verdict.TRUE
+        return Anchor(witnesses, 0 if node.left == TRUTH else left_from)
+
+    def _value(self, literal: Literal, anchors: tuple[_AnchorState, ...]) -> Verdict:
+        at = self._place.get(literal & ~1)
+        if at is None:
+            node = self._graph.nodes[literal >> 1]
+            inner = node.literals if isinstance(node, All) else ()
+            value = min((self._value(k, anchors) for k in inner), default=Verdict.TRUE)
+        else:
+            state = anchors[at]
+            value = Verdict.UNDECIDED if isinstance(state, Anchor) else state
+        return Verdict(-value) if literal & 1 else value
+
+    def _relevant(self, literal: Literal, anchors: tuple[_AnchorState, ...]) -> Iterator[Literal]:
+        """Yield the anchors on which the verdict can still depend."""
+        if self._value(literal, anchors) is not Verdict.UNDECIDED:
+            return
+        node = self._graph.nodes[literal >> 1]
+        if literal & ~1 in self._place:
+            yield literal & ~1
+        elif isinstance(node, All):
+            for inner in node.literals:
+                yield from self._relevant(inner, anchors)
+
+    def _remembered(
+        self, anchors: tuple[_AnchorState, ...], known: list[Knowledge], held: list[bool]
+    ) -> Residual:
+        """Forget what no undecided operator asks for, from the top downwards."""
+        asked = [EMPTY] * len(known)
+        for literal, anchor in zip(self.anchored, anchors, strict=True):
+            node = self._graph.nodes[literal >> 1]
+            if isinstance(anchor, Anchor) and isinstance(node, UntilNode):
+                last = anchor.witnesses[-1]
+                _ask(asked, node.right, anchor.witnesses)
+                if node.left != TRUTH:
+                    _ask(asked, node.left, between(anchor.left_from, _previous(last)))
+        for number, node in reversed(self._nodes):
+            known[number] = known[number].within(asked[number])
+            if asked[number] and self._graph.temporal[number]:
+                self._ask_parts(asked, node, _open(known[number], asked[number]))
+        still = [bool(value and a and a[-1] > 1) for value, a in zip(held, asked, strict=True)]
+        return Residual(anchors, tuple(known), tuple(still))
+
+    def _ask_parts(self, asked: list[Instants], node: GraphNode, pending: Instants) -> None:
+        match node:
+            case All(literals):
+                for literal in literals:
+                    _ask(asked, literal, pending)
+            case UntilNode(least, most, left, right):
+                _ask(asked, right, after(pending, least, most))
+                if left != TRUTH and most > 0:
+                    _ask(asked, left, after(pending, 0, _previous(most)))
+            case _:
+                pass
+
+
+def _moved(anchor: _AnchorState, by: int) -> _AnchorState:
+    if isinstance(anchor, Verdict):
+        return anchor
+    return Anchor(shift(anchor.witnesses, -by), anchor.left_from - by)
+
+
+def _next(instant: int) -> int:
+    return instant if instant == FUTURE else instant + 1
+
+
+def _previous(instant: int) -> int:
+    return instant if instant == FUTURE else instant - 1
+
+
+def _ask(asked: list[Instants], literal: Literal, instants: Instants) -> None:
+    asked[literal >> 1] = either(asked[literal >> 1], instants)
+
+
+def _open(known: Knowledge, asked: Instants) -> Instants:
+    return without(without(asked, known.true), known.false)
+
+
+def _consequences(node: GraphNode, known: list[Knowledge]) -> tuple[Instants, Instants]:
+    """Return where a node is true and false, given what is known about its parts."""
+    match node:
+        case All(literals):
+            parts = [known[k >> 1].of(k) for k in literals]
+            true, false = parts[0].true, parts[0].false
+            for part in parts[1:]:
+                true, false = both(true, part.true), either(false, part.false)
+            return true, false
+        case UntilNode(least, most, left, right):
+            goal = known[right >> 1].of(right)
+            possible = complement(goal.false)
+            if left == TRUTH:
+                return before(goal.true, least, most), complement(before(possible, least, most))
+            way = known[left >> 1].of(left)
+            passable = complement(way.false)
+            return (
+                until(way.true, goal.true, least, most),
+                complement(until(passable, possible, least, most)),
+            )
+        case _:
+            return EMPTY, EMPTY

@@ -1,0 +1,109 @@
+"""A residual in the words of a formula.
+
+The formula is about the time after the last state, the state itself having been looked at; an
+interval is relative to that state. Where what is left depends on instants that have passed in a
+way that no formula about the future says simply, an interval reaches back before 0.
+"""
+
+from dyknow.mtl import syntax
+from dyknow.mtl.graph import (
+    TRUTH,
+    All,
+    FormulaGraph,
+    Literal,
+    UntilNode,
+    conjunction,
+    disjunction,
+    negation,
+)
+from dyknow.mtl.instants import FUTURE, Instants, without
+from dyknow.mtl.residuals import Anchor, Progression, Residual
+from dyknow.mtl.syntax import Formula, Interval
+from dyknow.time import Duration
+
+__all__ = ["formula_from_residual"]
+
+
+def formula_from_residual(
+    graph: FormulaGraph, progression: Progression, residual: Residual
+) -> Formula:
+    """Return *residual* as a formula."""
+    return _Wording(graph, progression, residual).formula(graph.root)
+
+
+class _Wording:
+    """The parts of one residual as formulas."""
+
+    def __init__(self, graph: FormulaGraph, progression: Progression, residual: Residual) -> None:
+        self._graph = graph
+        self._states = dict(zip(progression.anchored, residual.anchors, strict=True))
+        self._knowledge = residual.knowledge
+
+    def formula(self, literal: Literal) -> Formula:
+        """Return what is left of a literal at the top level."""
+        node = self._graph.nodes[literal >> 1]
+        state = self._states.get(literal & ~1)
+        if isinstance(state, Anchor) and isinstance(node, UntilNode):
+            formula = self._anchor(node, state)
+        elif state is not None:
+            formula = syntax.TRUE if state == syntax.Verdict.TRUE else syntax.FALSE
+        else:
+            inner = node.literals if isinstance(node, All) else ()
+            formula = conjunction([self.formula(k) for k in inner])
+        return negation(formula) if literal & 1 else formula
+
+    def _anchor(self, node: UntilNode, anchor: Anchor) -> Formula:
+        left, right = self._graph.formula(node.left), self._graph.formula(node.right)
+        bounds = anchor.witnesses
+        pieces = [(bounds[i], bounds[i + 1]) for i in range(0, len(bounds), 2)]
+        if node.left != TRUTH:
+            return disjunction([syntax.Until(_interval(*piece), left, right) for piece in pieces])
+        return disjunction([f for p in pieces for f in self._eventually(node, right, *p)])
+
+    def _eventually(self, node: UntilNode, right: Formula, start: int, end: int) -> list[Formula]:
+        """Return what it takes for the right side to hold from *start* up to before *end*."""
+        simple = self._from_past(node.right, start, min(end, 1)) if start < 1 else None
+        if simple is None:
+            return [syntax.Eventually(_interval(start, end), right)]
+        if end <= 1:
+            return [simple]
+        return [simple, syntax.Eventually(_interval(1, end), right)]
+
+    def _from_past(self, literal: Literal, start: int, end: int) -> Formula | None:
+        """Return what it takes for a literal to have held at some instant of the past.
+
+        There is an answer for an operator over a state formula, alone among what is undecided.
+        """
+        literal = self._undecided(literal, (start, end))
+        node = self._graph.nodes[literal >> 1]
+        if not isinstance(node, UntilNode) or self._graph.temporal[node.right >> 1]:
+            return None
+        if node.left != TRUTH:
+            return None
+        most = FUTURE if node.most == FUTURE else node.most + 1
+        if not literal & 1:
+            last = most if most == FUTURE else end - 1 + most
+            within = _interval(max(1, start + node.least), last)
+            return syntax.Eventually(within, self._graph.formula(node.right))
+        if end - 1 + node.least > 1:
+            return None
+        last = most if most == FUTURE else start + most
+        return syntax.Always(_interval(1, last), self._graph.formula(node.right ^ 1))
+
+    def _undecided(self, literal: Literal, instants: Instants) -> Literal:
+        """Return the only undecided part of a conjunction at *instants*, or the whole."""
+        node = self._graph.nodes[literal >> 1]
+        if not isinstance(node, All):
+            return literal
+        undecided = [
+            k for k in node.literals if without(instants, self._knowledge[k >> 1].of(k).true)
+        ]
+        if len(undecided) != 1:
+            return literal
+        return self._undecided(undecided[0], instants) ^ (literal & 1)
+
+
+def _interval(start: int, end: int) -> Interval:
+    """Return an interval without its *end*; the instant after the state is called 0."""
+    last = None if end == FUTURE else Duration(end - 1)
+    return Interval(Duration(0 if start == 1 else start), last)
