@@ -2,7 +2,7 @@
 
 import re
 import tomllib
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
@@ -64,16 +64,16 @@ def read_scenario(path: Path) -> Scenario:
     source = SourceText(str(path), _read_text(path))
     values = _read_toml(source)
     if "name" in values:
-        raise ScenarioError(
-            _fault("the name of a scenario is that of its file", ("name",), source)
-        )
+        found_name = [("the name of a scenario is that of its file", ("name",))]
+        raise ScenarioError(*_faults(found_name, source))
     try:
         scenario = Scenario.model_validate(
             {"name": path.stem, **values}, context={"folder": path.parent}
         )
     except ValidationError as error:
-        raise ScenarioError(*_faults_of(error, source)) from error
-    faults = [_fault(text, at, source) for text, at in _misplaced_names(scenario)]
+        found = ((_message(detail), detail["loc"]) for detail in error.errors())
+        raise ScenarioError(*_faults(found, source)) from error
+    faults = _faults(_misplaced_names(scenario), source)
     if faults:
         raise ScenarioError(*faults)
     return scenario
@@ -107,25 +107,23 @@ def _read_toml(source: SourceText) -> dict[str, Any]:
     try:
         return tomllib.loads(source.text)
     except tomllib.TOMLDecodeError as error:
-        message = str(error)
-        at = re.search(r" \(at line (\d+), column (\d+)\)$", message)
-        place = f":{at[1]}:{at[2]}" if at else ""
-        text = message[: at.start()] if at else message
-        raise ScenarioError(f"{source.name}{place}: {text[0].lower()}{text[1:]}") from error
+        text = str(error)
+        at = re.search(r" \(at (?:line (\d+), column (\d+)|end of document)\)$", text)
+        end = source.place(len(source.text))
+        line, column = (at[1], at[2]) if at and at[1] else end
+        fault = text[: at.start()] if at else text
+        place = f"{source.name}:{line}:{column}"
+        raise ScenarioError(f"{place}: {fault[0].lower()}{fault[1:]}") from error
 
 
-def _faults_of(error: ValidationError, source: SourceText) -> Iterator[str]:
-    for detail in error.errors():
-        yield _fault(_message(detail), _path(detail), source)
-
-
-def _fault(message: str, path: KeyPath, source: SourceText) -> str:
-    span = span_of(path, places_of_keys(source), source)
-    return f"{span.place}: {message}\n{span.excerpt()}"
-
-
-def _path(detail: ErrorDetails) -> KeyPath:
-    return detail["loc"]
+def _faults(found: Iterable[tuple[str, KeyPath]], source: SourceText) -> list[str]:
+    """Return messages with their places and the lines in question, in reading order."""
+    places = places_of_keys(source)
+    spans = [(span_of(path, places, source), message) for message, path in found]
+    return [
+        f"{span.place}: {message}\n{span.excerpt()}"
+        for span, message in sorted(spans, key=lambda pair: pair[0].start)
+    ]
 
 
 def _message(detail: ErrorDetails) -> str:
@@ -135,13 +133,15 @@ def _message(detail: ErrorDetails) -> str:
             nearest = nearest_name(name, _known_keys(detail["loc"]))
             hint = f"; did you mean '{nearest}'?" if nearest else ""
             return f"no key called '{name}' here{hint}"
+        case "too_short":
+            return f"expected at least one item for '{name}', found none"
         case "missing":
             return f"the key '{name}' is missing"
         case "value_error":
             return detail["msg"].removeprefix("Value error, ")
         case _:
-            expected = detail["msg"].removeprefix("Input should be ")
-            return f"expected {expected[0].lower()}{expected[1:]}, found {detail['input']!r}"
+            expected = detail["msg"].removeprefix("Input should be ").split(", unable")[0]
+            return f"expected {expected}, found {detail['input']!r}"
 
 
 def _known_keys(path: KeyPath) -> list[str]:
