@@ -20,6 +20,7 @@ __all__ = [
     "complement",
     "either",
     "first_from",
+    "pieces",
     "run_end",
     "shift",
     "until",
@@ -69,6 +70,11 @@ def either(left: Instants, right: Instants) -> Instants:
 def without(left: Instants, right: Instants) -> Instants:
     """Return the instants of the first set that are not in the second."""
     return both(left, complement(right)) if left and right else left
+
+
+def pieces(instants: Instants) -> list[tuple[int, int]]:
+    """Return the intervals of the set in ascending order, each with its start and end."""
+    return [(instants[i], instants[i + 1]) for i in range(0, len(instants), 2)]
 
 
 def run_end(instants: Instants, start: int) -> int:

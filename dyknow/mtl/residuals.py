@@ -16,7 +16,7 @@ All instants are relative to the last state. Residuals that say the same are mos
 that there are few of them; in particular they do not grow with the number of states.
 """
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 from dyknow.mtl.graph import (
@@ -39,6 +39,7 @@ from dyknow.mtl.instants import (
     complement,
     either,
     first_from,
+    pieces,
     run_end,
     shift,
     until,
@@ -126,6 +127,7 @@ class Progression:
         self._graph = graph
         self._nodes = list(enumerate(graph.nodes))
         self.anchored = tuple(dict.fromkeys(self._top_level(graph.root)))
+        self._longest = sum(2 + _finite_bounds(node) for node in graph.nodes)
         self._place = {literal: at for at, literal in enumerate(self.anchored)}
 
     def _top_level(self, literal: Literal) -> Iterator[Literal]:
@@ -184,7 +186,11 @@ class Progression:
             anchor if literal in relevant or isinstance(anchor, Verdict) else Verdict.UNDECIDED
             for literal, anchor in zip(self.anchored, anchors, strict=True)
         )
-        return self._remembered(anchors, known, held)
+        anchors = tuple(
+            self._without_redundant(literal >> 1, anchor, known)
+            for literal, anchor in zip(self.anchored, anchors, strict=True)
+        )
+        return self._closed_up(self._remembered(anchors, known, held))
 
     def _learnt(self, moved: Residual, held: list[bool], interval: Instants) -> list[Knowledge]:
         """Return what is known about each node, from those without parts upwards."""
@@ -240,6 +246,72 @@ class Progression:
             for inner in node.literals:
                 yield from self._relevant(inner, anchors)
 
+    def _without_redundant(
+        self, number: int, anchor: _AnchorState, known: list[Knowledge]
+    ) -> _AnchorState:
+        """Drop past witnesses that cannot be better than others that stay.
+
+        Where the right side comes down to `not eventually [a, b] f`, an instant is no better
+        than the one before it, if f is known to be false *a* after that: whatever may come to
+        be wrong with the earlier instant is wrong with the later one too. Where it comes down
+        to `eventually [a, b] f`, the earlier of the two is no better.
+        """
+        node = self._graph.nodes[number]
+        if not isinstance(anchor, Anchor) or not isinstance(node, UntilNode):
+            return anchor
+        if node.left != TRUTH or anchor.witnesses[0] >= 1:
+            return anchor
+        redundant, last_by_part = EMPTY, dict[Literal, int]()
+        for start, end in pieces(both(anchor.witnesses, between(PAST, 1))):
+            part = self.undecided_part(node.right, (start, end), known)
+            inner = self._graph.nodes[part >> 1]
+            if isinstance(inner, UntilNode) and inner.left == TRUTH:
+                barren = shift(known[inner.right >> 1].of(inner.right).false, -inner.least)
+                if part & 1:
+                    linked = run_end(barren, last_by_part.get(part, start)) >= start
+                    first = start if part in last_by_part and linked else start + 1
+                    poor = both(shift(barren, 1), between(first, end))
+                else:
+                    poor = both(barren, between(start, end - 1))
+                redundant = either(redundant, poor)
+                last_by_part[part] = end - 1
+        return Anchor(without(anchor.witnesses, redundant), anchor.left_from)
+
+    def undecided_part(
+        self, literal: Literal, instants: Instants, known: Sequence[Knowledge]
+    ) -> Literal:
+        """Return what a conjunction comes down to at *instants* if only one part is open."""
+        node = self._graph.nodes[literal >> 1]
+        if not isinstance(node, All):
+            return literal
+        parts = [k for k in node.literals if without(instants, known[k >> 1].of(k).true)]
+        if len(parts) != 1:
+            return literal
+        return self.undecided_part(parts[0], instants, known) ^ (literal & 1)
+
+    def _closed_up(self, residual: Residual) -> Residual:
+        """Shorten the gaps between remembered instants that are too long to matter.
+
+        Instants are only ever compared after durations of the formula have been added to them,
+        so that a gap longer than all of these together is as good as any longer one.
+        """
+        bounds = {bound for known in residual.knowledge for bound in (*known.true, *known.false)}
+        for anchor in residual.anchors:
+            if isinstance(anchor, Anchor):
+                bounds.update((*anchor.witnesses, anchor.left_from))
+        past = sorted((b for b in bounds if PAST < b < 0), reverse=True)
+        if not past or past[-1] > -self._longest:
+            return residual
+        new, nearer = {0: 0}, 0
+        for bound in past:
+            new[bound] = new[nearer] - min(nearer - bound, self._longest)
+            nearer = bound
+        return Residual(
+            tuple(_renamed_anchor(anchor, new) for anchor in residual.anchors),
+            tuple(_renamed_knowledge(known, new) for known in residual.knowledge),
+            residual.held,
+        )
+
     def _remembered(
         self, anchors: tuple[_AnchorState, ...], known: list[Knowledge], held: list[bool]
     ) -> Residual:
@@ -270,6 +342,30 @@ class Progression:
                     _ask(asked, left, after(pending, 0, _previous(most)))
             case _:
                 pass
+
+
+def _finite_bounds(node: GraphNode) -> int:
+    """Return the longest finite duration that a node adds to an instant."""
+    if not isinstance(node, UntilNode):
+        return 0
+    return node.least if node.most == FUTURE else node.most
+
+
+def _renamed(instants: Instants, new: Mapping[int, int]) -> Instants:
+    return tuple(new.get(bound, bound) for bound in instants)
+
+
+def _renamed_anchor(anchor: _AnchorState, new: Mapping[int, int]) -> _AnchorState:
+    if isinstance(anchor, Verdict):
+        return anchor
+    left_from = new.get(anchor.left_from, anchor.left_from)
+    return Anchor(_renamed(anchor.witnesses, new), left_from)
+
+
+def _renamed_knowledge(known: Knowledge, new: Mapping[int, int]) -> Knowledge:
+    if not known.true and not known.false:
+        return known
+    return Knowledge(_renamed(known.true, new), _renamed(known.false, new))
 
 
 def _moved(anchor: _AnchorState, by: int) -> _AnchorState:

@@ -16,7 +16,7 @@ from dyknow.mtl.graph import (
     disjunction,
     negation,
 )
-from dyknow.mtl.instants import FUTURE, Instants, without
+from dyknow.mtl.instants import FUTURE, pieces
 from dyknow.mtl.residuals import Anchor, Progression, Residual
 from dyknow.mtl.syntax import Formula, Interval
 from dyknow.time import Duration
@@ -36,6 +36,7 @@ class _Wording:
 
     def __init__(self, graph: FormulaGraph, progression: Progression, residual: Residual) -> None:
         self._graph = graph
+        self._progression = progression
         self._states = dict(zip(progression.anchored, residual.anchors, strict=True))
         self._knowledge = residual.knowledge
 
@@ -54,11 +55,16 @@ class _Wording:
 
     def _anchor(self, node: UntilNode, anchor: Anchor) -> Formula:
         left, right = self._graph.formula(node.left), self._graph.formula(node.right)
-        bounds = anchor.witnesses
-        pieces = [(bounds[i], bounds[i + 1]) for i in range(0, len(bounds), 2)]
         if node.left != TRUTH:
-            return disjunction([syntax.Until(_interval(*piece), left, right) for piece in pieces])
-        return disjunction([f for p in pieces for f in self._eventually(node, right, *p)])
+            return disjunction(
+                [
+                    syntax.Until(_interval(*piece), left, right)
+                    for piece in pieces(anchor.witnesses)
+                ]
+            )
+        return disjunction(
+            [f for p in pieces(anchor.witnesses) for f in self._eventually(node, right, *p)]
+        )
 
     def _eventually(self, node: UntilNode, right: Formula, start: int, end: int) -> list[Formula]:
         """Return what it takes for the right side to hold from *start* up to before *end*."""
@@ -74,7 +80,7 @@ class _Wording:
 
         There is an answer for an operator over a state formula, alone among what is undecided.
         """
-        literal = self._undecided(literal, (start, end))
+        literal = self._progression.undecided_part(literal, (start, end), self._knowledge)
         node = self._graph.nodes[literal >> 1]
         if not isinstance(node, UntilNode) or self._graph.temporal[node.right >> 1]:
             return None
@@ -89,18 +95,6 @@ class _Wording:
             return None
         last = most if most == FUTURE else start + most
         return syntax.Always(_interval(1, last), self._graph.formula(node.right ^ 1))
-
-    def _undecided(self, literal: Literal, instants: Instants) -> Literal:
-        """Return the only undecided part of a conjunction at *instants*, or the whole."""
-        node = self._graph.nodes[literal >> 1]
-        if not isinstance(node, All):
-            return literal
-        undecided = [
-            k for k in node.literals if without(instants, self._knowledge[k >> 1].of(k).true)
-        ]
-        if len(undecided) != 1:
-            return literal
-        return self._undecided(undecided[0], instants) ^ (literal & 1)
 
 
 def _interval(start: int, end: int) -> Interval:
