@@ -1,1 +1,25 @@
-"""To be described."""
+"""Complex events recognised from simple ones.
+
+Read in this order: `syntax` (what a chronicle says), `parser` and `printer` (text to chronicle
+and back), `constraints` (simple temporal networks), `check` (every fault of a file), `events`
+(what goes in and comes out), `patterns` and `models` (chronicles prepared for recognition),
+`instances` (partial instances and how they are found), `counting`, `matching` (which instances
+begin, go on, complete, or die), `reporting` (which matches are reported), `prospects` (partial
+instances as people see them), `recognition` (the recogniser), `processes` (the recogniser on
+streams); `errors`.
+"""
+
+from chronicles.events import Event, Recognition
+from chronicles.models import Model, models_from_chronicles
+from chronicles.parser import parse_chronicles, read_chronicles
+from chronicles.recognition import Recogniser
+
+__all__ = [
+    "Event",
+    "Model",
+    "Recogniser",
+    "Recognition",
+    "models_from_chronicles",
+    "parse_chronicles",
+    "read_chronicles",
+]

@@ -1,0 +1,60 @@
+"""Every error that the chronicle package raises on purpose.
+
+All of them are faults of a text that a person wrote. What the world does (a late event, a partial
+instance that dies) is not an error; see `chronicles.recognition`.
+"""
+
+from collections.abc import Sequence
+
+from dyknow.errors import SpecificationError
+from dyknow.source_text import Span
+
+__all__ = [
+    "ChronicleError",
+    "ChronicleSyntaxError",
+    "InconsistentConstraintsError",
+    "UnboundInstantError",
+    "UnboundVariableError",
+    "ValueOutsideDomainError",
+]
+
+
+class ChronicleError(SpecificationError):
+    """The root of the faults that only chronicles can have."""
+
+
+class ChronicleSyntaxError(ChronicleError):
+    """A chronicle file does not follow the grammar."""
+
+
+class InconsistentConstraintsError(ChronicleError):
+    """The temporal constraints of a chronicle contradict each other."""
+
+    def __init__(self, chronicle: str, contradictory: Sequence[str], span: Span) -> None:
+        listed = "; ".join(contradictory)
+        super().__init__(f"chronicle '{chronicle}' can never be recognised: {listed}", span)
+        self.contradictory = tuple(contradictory)
+
+
+class UnboundInstantError(ChronicleError):
+    """An instant is used that is the time of no event of its chronicle."""
+
+    def __init__(self, instant: str, span: Span, nearest: str | None = None) -> None:
+        hint = f"; did you mean '{nearest}'?" if nearest else ""
+        super().__init__(f"instant '{instant}' is the time of no event{hint}", span)
+
+
+class UnboundVariableError(ChronicleError):
+    """A variable is used that no event of its chronicle binds."""
+
+    def __init__(self, variable: str, span: Span, nearest: str | None = None) -> None:
+        hint = f"; did you mean '{nearest}'?" if nearest else ""
+        super().__init__(f"variable '{variable}' is bound by no event{hint}", span)
+
+
+class ValueOutsideDomainError(ChronicleError):
+    """A value is used where its domain does not allow it."""
+
+    def __init__(self, value: str, place: str, span: Span, nearest: str | None = None) -> None:
+        hint = f"; did you mean '{nearest}'?" if nearest else ""
+        super().__init__(f"'{value}' is not in the domain of {place}{hint}", span)

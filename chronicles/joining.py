@@ -1,0 +1,255 @@
+"""How an event joins the partial instances that it fits to.
+
+A match is put together from *connected* parts: sets of events whose patterns share variables.
+Each event joins the parts that it has a variable in common with, at any size that still leaves a
+complete match possible; what shares no variable with it is left alone, so that cars that have
+nothing to do with each other never meet. Since each part is made when its last event comes, and
+taking that event away leaves the parts that it joined, every match is found exactly once,
+whatever the order in which the events of one instant are listed.
+
+For each slot and each combination of stages that an event can join, a *recipe* is made once:
+a function that holds the index to look into, the limits to test, and the places of the values.
+"""
+
+from collections.abc import Callable, Iterator, Sequence
+from itertools import product
+
+from chronicles.constraints import UNBOUNDED
+from chronicles.events import Event
+from chronicles.instances import Instance, Stage
+from chronicles.models import Model, Slot
+from chronicles.patterns import Values, key_of, projection
+
+__all__ = ["Joiner", "Recipe"]
+
+Recipe = Callable[[Event, int, Values], None]
+"""Joins an event with what it fits to, given its time and the values of its slot's variables."""
+
+_Find = Callable[[int, Values], Iterator[Instance]]
+
+
+class Joiner:
+    """The stages of one chronicle and the recipes that lead from one to another.
+
+    Stages are made when the first instance gets there: of the many sets of slots that can be
+    filled, few ever are.
+
+    Args:
+        model: The chronicle.
+        new_stage: Makes the stage of the slots in a set of bits.
+        admit: Takes in a new instance at a time.
+
+    Attributes:
+        stages: The stages made so far, by the set of their slots.
+        recipes: For each slot what to do with an event.
+    """
+
+    def __init__(
+        self,
+        model: Model,
+        new_stage: Callable[[int], Stage],
+        admit: Callable[[Instance, int], None],
+    ) -> None:
+        self._model = model
+        self._new_stage = new_stage
+        self._admit = admit
+        self._combinations: list[list[tuple[Stage, ...]]] = [[()] for _ in model.slots]
+        self.stages: dict[int, Stage] = {}
+        self.recipes: list[list[Recipe]] = [[] for _ in model.slots]
+        for slot in model.slots:
+            if self._is_possible(1 << slot.index, slot.neighbours):
+                self.recipes[slot.index].append(self._beginning(slot))
+
+    def _stage(self, mask: int) -> Stage:
+        stage = self.stages.get(mask)
+        if stage is None:
+            stage = self.stages[mask] = self._new_stage(mask)
+            for i in stage.awaited:
+                self._add_recipes(self._model.slots[i], stage)
+        return stage
+
+    def _add_recipes(self, slot: Slot, stage: Stage) -> None:
+        stage.index_by(_shared(slot, stage))
+        combinations = self._combinations[slot.index]
+        for others in list(combinations):
+            if any(other.mask & (stage.mask | stage.near) for other in others):
+                continue
+            joined = (*others, stage)
+            combinations.append(joined)
+            mask = 1 << slot.index
+            near = slot.neighbours
+            for part in joined:
+                mask |= part.mask
+                near |= part.near
+            if self._is_possible(mask, near):
+                self.recipes[slot.index].append(self._joining(slot, joined))
+
+    def _is_possible(self, mask: int, near: int) -> bool:
+        """Return whether the open slots next to *mask* can be filled later than all of it."""
+        slots = range(len(self._model.slots))
+        filled = [i for i in slots if mask & 1 << i]
+        awaited = [i for i in slots if near & ~mask & 1 << i]
+        return all(self._model.limits[i][j] >= 0 for i in filled for j in awaited)
+
+    def _beginning(self, slot: Slot) -> Recipe:
+        """Return the recipe for an event that joins nothing."""
+        at, n_slots = slot.index, len(self._model.slots)
+        unlimited = [UNBOUNDED] * n_slots
+        reach = self._reach(slot, tuple(range(n_slots)))
+        arrange = self._arrangement(slot.pattern.variables, 1 << at)
+        allows = self._restriction(1 << at, ())
+        stage: Stage | None = None
+
+        def begin(event: Event, now: int, values: Values) -> None:
+            nonlocal stage
+            arranged = values if arrange is None else arrange(values)
+            if allows is not None and not allows(arranged):
+                return
+            latest = unlimited.copy()
+            for j, limit in reach:
+                latest[j] = now + limit
+            times = [0] * n_slots
+            times[at] = now
+            events: list[Event | None] = [None] * n_slots
+            events[at] = event
+            if stage is None:
+                stage = self._stage(1 << at)
+            self._admit(Instance(stage, arranged, times, events, latest), now)
+
+        return begin
+
+    def _joining(self, slot: Slot, parts: tuple[Stage, ...]) -> Recipe:
+        """Return the recipe for an event that joins one instance of each of *parts*."""
+        if len(parts) == 1 and set(slot.pattern.variables) <= set(parts[0].variables):
+            return self._going_on(slot, parts[0])
+        find = [self._finder(slot, part) for part in parts]
+        mask = 1 << slot.index
+        for part in parts:
+            mask |= part.mask
+        sources = [*(v for part in parts for v in part.variables), *slot.pattern.variables]
+        arrange = self._arrangement(sources, mask)
+        allows = self._restriction(mask, parts)
+        filled = [part.filled for part in parts]
+
+        def join(event: Event, now: int, values: Values) -> None:
+            found = [list(finder(now, values)) for finder in find]
+            for instances in product(*found):
+                if not _fit(instances, filled):
+                    continue
+                arranged = tuple([v for one in instances for v in one.values]) + values
+                if arrange is not None:
+                    arranged = arrange(arranged)
+                if allows is None or allows(arranged):
+                    joined = self._joined(slot, event, now, instances)
+                    joined.stage, joined.values = self._stage(mask), arranged
+                    self._admit(joined, now)
+
+        return join
+
+    def _joined(
+        self, slot: Slot, event: Event, now: int, instances: tuple[Instance, ...]
+    ) -> Instance:
+        first, *others = instances
+        latest = [min(now + d, UNBOUNDED) for d in self._model.limits[slot.index]]
+        latest = list(map(min, latest, first.latest))
+        times, events = first.times.copy(), first.events.copy()
+        for other in others:
+            latest = list(map(min, latest, other.latest))
+            for i in other.stage.filled:
+                times[i], events[i] = other.times[i], other.events[i]
+        times[slot.index], events[slot.index] = now, event
+        return Instance(first.stage, first.values, times, events, latest)
+
+    def _going_on(self, slot: Slot, part: Stage) -> Recipe:
+        """Return the recipe for an event that joins one instance and tells no new value."""
+        at = slot.index
+        mask = part.mask | 1 << at
+        find = self._finder(slot, part)
+        reach = self._reach(slot, tuple(j for j in part.open if j != at))
+        allows = self._restriction(mask, (part,))
+        stage: Stage | None = None
+
+        def go_on(event: Event, now: int, values: Values) -> None:
+            nonlocal stage
+            for instance in find(now, values):
+                if allows is not None and not allows(instance.values):
+                    continue
+                latest = instance.latest.copy()
+                for j, limit in reach:
+                    latest[j] = min(latest[j], now + limit)
+                times = instance.times.copy()
+                times[at] = now
+                events = instance.events.copy()
+                events[at] = event
+                if stage is None:
+                    stage = self._stage(mask)
+                self._admit(Instance(stage, instance.values, times, events, latest), now)
+
+        return go_on
+
+    def _finder(self, slot: Slot, part: Stage) -> _Find:
+        """Return a function that finds the instances of *part* that an event fits to."""
+        at = slot.index
+        shared = _shared(slot, part)
+        index = part.index_by(shared)
+        key = key_of(slot.pattern.variables, shared)
+        limits = self._model.limits[at]
+        pauses = tuple((i, -limits[i]) for i in part.filled if limits[i] < 0)
+
+        def find(now: int, values: Values) -> Iterator[Instance]:
+            bucket = index.get(key(values))
+            if bucket is None:
+                return
+            for instance in bucket:
+                if now > instance.latest[at]:
+                    continue
+                for i, pause in pauses:
+                    if now - instance.times[i] < pause:
+                        break
+                else:
+                    yield instance
+
+        return find
+
+    def _reach(self, slot: Slot, others: Sequence[int]) -> tuple[tuple[int, int], ...]:
+        """Return which of *others* an event of *slot* limits, and how much later they can be."""
+        limits = self._model.limits[slot.index]
+        return tuple((j, limits[j]) for j in others if limits[j] < UNBOUNDED)
+
+    def _arrangement(self, source: Sequence[str], mask: int) -> Callable[[Values], Values] | None:
+        return projection(source, self._variables(mask))
+
+    def _variables(self, mask: int) -> tuple[str, ...]:
+        slots = (slot for slot in self._model.slots if mask & 1 << slot.index)
+        bound = {name for slot in slots for name in slot.pattern.variables}
+        return tuple(name for name in self._model.variables if name in bound)
+
+    def _restriction(self, mask: int, parts: tuple[Stage, ...]) -> Callable[[Values], bool] | None:
+        """Return a test of what can be judged now and could not be judged for any of *parts*."""
+        variables = self._variables(mask)
+        tests = tuple(
+            (projection(variables, r.variables) or _same, r.allows)
+            for r in self._model.restrictions
+            if set(r.variables) <= set(variables)
+            and not any(set(r.variables) <= set(part.variables) for part in parts)
+        )
+        if not tests:
+            return None
+        return lambda values: all(allows(pick(values)) for pick, allows in tests)
+
+
+def _shared(slot: Slot, stage: Stage) -> tuple[str, ...]:
+    return tuple(v for v in slot.pattern.variables if v in stage.variables)
+
+
+def _same(values: Values) -> Values:
+    return values
+
+
+def _fit(instances: tuple[Instance, ...], filled: list[tuple[int, ...]]) -> bool:
+    """Return whether no instance puts a limit on a slot that another one has filled later."""
+    for one in instances:
+        for other, slots in zip(instances, filled, strict=True):
+            if one is not other and any(other.times[i] > one.latest[i] for i in slots):
+                return False
+    return True

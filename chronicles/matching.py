@@ -1,0 +1,307 @@
+"""Exact, incremental matching of one chronicle: its instances begin, go on, complete, or die.
+
+How events join instances is told by `chronicles.joining`; here is what else can happen to an
+instance. A forbidden event limits the instant at which its interval ends, at once and in every
+instance that it concerns; the limits of the other instants follow, and the agenda lets the
+instance die when the clock has passed one of them. Without this, instances would be kept until
+their last event comes, only to be refused.
+"""
+
+from collections.abc import Callable, Iterator
+
+from chronicles.constraints import INSTANT, UNBOUNDED
+from chronicles.counting import CountedEvents
+from chronicles.events import Event
+from chronicles.instances import Agenda, Instance, Stage, Watch
+from chronicles.joining import Joiner
+from chronicles.models import Counter, Model, Slot
+from chronicles.patterns import Values, key_of
+
+__all__ = ["Handler", "Matcher"]
+
+Handler = Callable[[Event, int], None]
+"""Takes in an event of the right name, at an instant."""
+
+_LEAST_TO_SWEEP = 1024
+
+
+class Matcher:
+    """The partial instances of one chronicle.
+
+    Args:
+        model: The chronicle.
+        agenda: Where instances that time decides about are put.
+        on_match: Called with each match and the time from when on nothing could take it back.
+    """
+
+    def __init__(
+        self, model: Model, agenda: Agenda, on_match: Callable[["Matcher", Instance, int], None]
+    ) -> None:
+        self.model = model
+        self._agenda = agenda
+        self._on_match = on_match
+        self._watches: dict[Counter, list[Watch]] = {c: [] for c in model.counters}
+        self._counted = {c: CountedEvents(c) for c in model.counters if c.looks_back}
+        self._seen_now: list[set[Values]] = []
+        self._sweep_at = _LEAST_TO_SWEEP
+        self._joiner = Joiner(model, self._new_stage, self._admit)
+
+    def handlers(self) -> Iterator[tuple[str, str | None, Handler]]:
+        """Yield a handler for each predicate with the name and value of its events.
+
+        An event is given to the handlers in this order: it counts before it is used.
+        """
+        for counter in self.model.counters:
+            pattern = counter.pattern
+            yield pattern.event_type.name, pattern.to_value, self._counting(counter)
+        for slot in self.model.slots:
+            yield slot.pattern.event_type.name, slot.pattern.to_value, self._filling(slot)
+
+    def instances(self) -> Iterator[Instance]:
+        """Yield all partial instances."""
+        for stage in self._joiner.stages.values():
+            yield from stage.members
+
+    @property
+    def notes_instants(self) -> bool:
+        """Whether `begin_instant` does anything."""
+        return any(slot.pattern.loose for slot in self.model.slots)
+
+    @property
+    def keeps_counts(self) -> bool:
+        """Whether `sweep` does anything."""
+        return bool(self._counted)
+
+    def n_counted(self) -> int:
+        """Return how many counted events are kept."""
+        return sum(counted.n_times for counted in self._counted.values())
+
+    def begin_instant(self) -> None:
+        """Forget which events the instant before held."""
+        for seen in self._seen_now:
+            seen.clear()
+
+    def earliest_begin(self, slot: int, clock: int, offset: int = 0) -> int:
+        """Return before which time no instance, present or future, has *offset* from *slot*."""
+        earliest = clock + min(offset, 0)
+        for stage in self._joiner.stages.values():
+            if stage.mask & 1 << slot:
+                for instance in stage.members:
+                    earliest = min(earliest, instance.times[slot] + offset)
+        return earliest
+
+    def sweep(self, clock: int) -> None:
+        """Forget counted events that no instance can ask for, once in a while."""
+        if self._counted and self.n_counted() > self._sweep_at:
+            for counter, counted in self._counted.items():
+                begin = self.earliest_begin(counter.begin, clock, counter.begin_offset)
+                counted.forget_before(begin)
+            self._sweep_at = max(_LEAST_TO_SWEEP, 2 * self.n_counted())
+
+    # Events that fill slots.
+
+    def _filling(self, slot: Slot) -> Handler:
+        match = slot.pattern.match
+        recipes = self._joiner.recipes[slot.index]
+        if not slot.pattern.loose:
+
+            def fill(event: Event, now: int) -> None:
+                values = match(event)
+                if values is not None:
+                    for recipe in recipes:
+                        recipe(event, now, values)
+
+            return fill
+
+        # Several events of one instant can mean the same to this slot; the first stands for all.
+        seen: set[Values] = set()
+        self._seen_now.append(seen)
+
+        def fill_once(event: Event, now: int) -> None:
+            values = match(event)
+            if values is not None and values not in seen:
+                seen.add(values)
+                for recipe in recipes:
+                    recipe(event, now, values)
+
+        return fill_once
+
+    def _new_stage(self, mask: int) -> Stage:
+        stage = Stage(self.model, mask, self._review)
+        for watch in stage.watches:
+            self._watches[watch.counter].append(watch)
+        return stage
+
+    # Instances.
+
+    def _review(self, instance: Instance, clock: int) -> None:
+        """Decide about an instance that is due."""
+        if not instance.stage.is_complete:
+            self._kill(instance)
+        else:
+            self._judge(instance, clock)
+
+    def _admit(self, instance: Instance, now: int) -> None:
+        """Take in a new instance, unless it is dead or complete already."""
+        stage = instance.stage
+        if stage.is_complete:
+            self._complete(instance, now)
+            return
+        latest = instance.latest
+        for watch in stage.watches:
+            if watch.counter.looks_back and not self._look_back(watch, instance, now):
+                return
+        deadline = min([latest[i] for i in stage.awaited])
+        if deadline < now:
+            return
+        stage.add(instance)
+        for watch in stage.watches:
+            stage.watch(watch, watch.key(instance.values), instance)
+        if deadline < UNBOUNDED:
+            self._agenda.schedule(instance, deadline + INSTANT)
+
+    def _look_back(self, watch: Watch, instance: Instance, now: int) -> bool:
+        """Apply the events that have been counted already; return whether that leaves it alive."""
+        counter = watch.counter
+        begin = instance.times[counter.begin] + counter.begin_offset
+        excess = self._excess(watch, instance, begin)
+        return excess is None or self._limit_end(watch, instance, excess, now)
+
+    def _limit_end(self, watch: Watch, instance: Instance, excess: int, now: int) -> bool:
+        """End the interval of a counter at *excess* at the latest.
+
+        Returns whether the instance can still become complete.
+        """
+        counter = watch.counter
+        end = counter.end
+        if watch.end_known:
+            return instance.times[end] + counter.end_offset <= excess
+        latest = instance.latest
+        bound = excess - counter.end_offset
+        if bound >= latest[end]:
+            return True
+        latest[end] = bound
+        limits = self.model.limits[end]
+        for i in instance.stage.open:
+            if limits[i] < UNBOUNDED and bound + limits[i] < latest[i]:
+                latest[i] = bound + limits[i]
+        return min([latest[i] for i in instance.stage.awaited]) >= now
+
+    def _kill(self, instance: Instance) -> None:
+        instance.stage.remove(instance)
+        self._agenda.withdraw(instance)
+
+    # Events that count.
+
+    def _counting(self, counter: Counter) -> Handler:
+        pattern = counter.pattern
+        match = pattern.match
+        key = key_of(pattern.variables, pattern.variables)
+        watches = self._watches[counter]
+        counted = self._counted.get(counter)
+
+        def count(event: Event, now: int) -> None:
+            values = match(event)
+            if values is None:
+                return
+            place = key(values)
+            if counted is not None:
+                counted.add(place, now)
+            for watch in watches:
+                bucket = watch.index.get(place)
+                if bucket is not None:
+                    for instance in list(bucket):
+                        self._notice(watch, instance, now)
+
+        return count
+
+    def _notice(self, watch: Watch, instance: Instance, now: int) -> None:
+        """Let *instance* react to a counted event at *now*."""
+        counter = watch.counter
+        begin = instance.times[counter.begin] + counter.begin_offset
+        if now < begin:
+            return
+        if instance.stage.is_complete:
+            self._notice_last(watch, instance, now)
+            return
+        excess = self._excess(watch, instance, begin) if counter.looks_back else now
+        if excess is None:
+            return
+        if not self._limit_end(watch, instance, excess, now):
+            self._kill(instance)
+            return
+        due = min([instance.latest[i] for i in instance.stage.awaited]) + INSTANT
+        if due < UNBOUNDED and due != instance.due:
+            self._agenda.schedule(instance, due)
+
+    def _notice_last(self, watch: Watch, instance: Instance, now: int) -> None:
+        """Let an instance all of whose slots are filled react to a counted event at *now*."""
+        counter = watch.counter
+        if counter.looks_back:
+            self._judge(instance, now)
+        elif now < instance.times[counter.end] + counter.end_offset:
+            self._kill(instance)
+
+    def _excess(self, watch: Watch, instance: Instance, begin: int) -> int | None:
+        """Return when the first event from *begin* on came that is one too many, if it has."""
+        counter = watch.counter
+        assert counter.most is not None
+        return self._counted[counter].nth(watch.key(instance.values), begin, counter.most)
+
+    # Matches.
+
+    def _complete(self, instance: Instance, now: int) -> None:
+        """Decide about an instance all of whose slots are filled for the first time."""
+        if not self.model.counters:
+            self._on_match(self, instance, now)
+            return
+        instance.stage.add(instance)
+        for watch in instance.stage.watches:
+            instance.stage.watch(watch, watch.key(instance.values), instance)
+        self._judge(instance, now)
+
+    def _judge(self, instance: Instance, clock: int) -> None:
+        """Recognise, keep waiting, or kill an instance all of whose slots are filled."""
+        settled_at = max(instance.times)
+        ends = []
+        for watch in instance.stage.watches:
+            settled, end = self._standing(watch, instance, clock)
+            if settled is not None:
+                settled_at = max(settled_at, settled)
+            elif end > clock:
+                ends.append(end)
+            else:
+                self._kill(instance)
+                return
+        if ends:
+            due = min(ends)
+            if due != instance.due:
+                self._agenda.schedule(instance, due)
+            return
+        self._kill(instance)
+        self._on_match(self, instance, settled_at)
+
+    def _standing(self, watch: Watch, instance: Instance, clock: int) -> tuple[int | None, int]:
+        """Return since when the counter is settled, and the end of its interval.
+
+        If it is not settled, it fails unless the end is after *clock*.
+        """
+        counter = watch.counter
+        begin = instance.times[counter.begin] + counter.begin_offset
+        end = instance.times[counter.end] + counter.end_offset
+        never = (None, clock)
+        if end <= begin:
+            return never if counter.least else (max(instance.times), end)
+        key = watch.key(instance.values)
+        counted = self._counted.get(counter)
+        n = counted.count(key, begin, end) if counted is not None else 0
+        if counter.most is None:
+            enough = n >= counter.least
+            if not enough or counted is None or not counter.least:
+                return (max(instance.times) if enough else None, end)
+            return (counted.nth(key, begin, counter.least - 1), end)
+        if n > counter.most:
+            return never
+        if end > clock:
+            return (None, end)
+        return (end, end) if n >= counter.least else never

@@ -1,0 +1,280 @@
+"""The recogniser against the meaning of chronicles, and its promises one by one."""
+
+from collections.abc import Iterator
+from itertools import groupby
+
+from hypothesis import assume, given, settings
+from hypothesis import strategies as st
+
+from chronicles.check import faults
+from chronicles.events import Event, Recognition
+from chronicles.models import models_from_chronicles
+from chronicles.parser import parse_chronicles
+from chronicles.recognition import Recogniser
+from chronicles.syntax import (
+    Chronicle,
+    Comparison,
+    Difference,
+    EventAt,
+    EventType,
+    Instant,
+    Length,
+    NoEvent,
+    Occurs,
+    Relation,
+    Value,
+    Variable,
+    Within,
+)
+from dyknow.time import MILLISECOND, TimePoint
+
+MS = int(MILLISECOND)
+
+# The meaning, written down naively.
+
+
+def matches(event_type: EventType, event: Event, known: dict[str, str]) -> dict[str, str] | None:
+    """Return the variables after matching, or None."""
+    change = event_type.change
+    if (change is None) != (event.from_value is None and event.to_value is None):
+        return None
+    parameters = [*event_type.arguments, *((change.before, change.after) if change else ())]
+    values = [*event.arguments, *((event.from_value, event.to_value) if change else ())]
+    if event.attribute != event_type.name or len(values) != len(parameters):
+        return None
+    known = dict(known)
+    for parameter, value in zip(parameters, values, strict=True):
+        if isinstance(parameter, Value) and value != parameter.text:
+            return None
+        if isinstance(parameter, Variable) and (
+            value is None or known.setdefault(parameter.name, value) != value
+        ):
+            return None
+    return known
+
+
+def assignments(
+    chronicle: Chronicle, events: list[Event]
+) -> Iterator[tuple[dict[str, int], dict[str, str]]]:
+    """Yield all ways to meet the `event` predicates."""
+
+    def extend(predicates, times, values):
+        if not predicates:
+            yield times, values
+            return
+        first, *others = predicates
+        for event in events:
+            if times.get(first.instant, event.time) != event.time:
+                continue
+            extended = matches(first.event_type, event, values)
+            if extended is not None:
+                yield from extend(others, {**times, first.instant: event.time}, extended)
+
+    predicates = [s for s in chronicle.statements if isinstance(s, EventAt)]
+    yield from extend(predicates, {}, {})
+
+
+def amount(operand: object, times: dict[str, int]) -> int:
+    """Return the number that a temporal expression stands for."""
+    match operand:
+        case Instant(_, name, offset):
+            return times[name] + offset
+        case Difference(_, later, earlier, offset):
+            return times[later] - times[earlier] + offset
+        case Length(_, duration):
+            return duration
+    raise AssertionError(operand)
+
+
+def holds(statement: object, times: dict[str, int], values: dict[str, str]) -> bool:
+    """Return whether a constraint holds."""
+    match statement:
+        case Comparison(_, operands, orders):
+            left = [amount(operand, times) for operand in operands]
+            tests = {
+                "<": lambda a, b: a < b,
+                "<=": lambda a, b: a <= b,
+                "=": lambda a, b: a == b,
+                ">": lambda a, b: a > b,
+                ">=": lambda a, b: a >= b,
+            }
+            return all(tests[o](a, b) for o, a, b in zip(orders, left, left[1:], strict=False))
+        case Within(_, difference, interval):
+            length = amount(difference, times)
+            lower, upper = interval.lower, interval.upper
+            return (lower is None or lower <= length) and (upper is None or length <= upper)
+        case Relation(_, variable, sign, other):
+            text = other.text if isinstance(other, Value) else values[other.name]
+            return (values[variable.name] == text) == (sign == "==")
+    return True
+
+
+def settled_at(statement: object, times, values, events: list[Event]) -> float | None:
+    """Return from when on a counter holds for good; None if it never does."""
+    match statement:
+        case NoEvent(_, event_type, begin, end):
+            least, most = 0, 0
+        case Occurs(_, least, most, event_type, begin, end):
+            pass
+        case _:
+            return float("-inf")
+    first, last = amount(begin, times), amount(end, times)
+    counted = [
+        event.time
+        for event in events
+        if first <= event.time < last and matches(event_type, event, values) is not None
+    ]
+    if len(counted) < least or (most is not None and len(counted) > most):
+        return None
+    if first >= last:
+        return float("-inf")
+    if most is not None:
+        return last
+    return sorted(counted)[least - 1] if least else float("-inf")
+
+
+def enumerate_recognitions(
+    chronicle: Chronicle, events: list[Event], clock: int
+) -> list[tuple[object, ...]]:
+    """Return all recognitions by the meaning of the chronicle alone."""
+    facts = {(e.time, e.attribute, e.arguments, e.from_value, e.to_value): e for e in events}
+    distinct = list(facts.values())
+    found = set()
+    for times, values in assignments(chronicle, distinct):
+        if not all(holds(statement, times, values) for statement in chronicle.statements):
+            continue
+        settled = [settled_at(s, times, values, distinct) for s in chronicle.statements]
+        if None in settled:
+            continue
+        at = max(*settled, *times.values())
+        if at <= clock:
+            found.add((at, tuple(sorted(times.items())), tuple(sorted(values.items()))))
+    return sorted(found)
+
+
+# Random models and streams.
+
+VARIABLES = ["?x", "?y", "?z"]
+SIGNALS = {"a": (1, True), "b": (2, True), "m": (0, False), "n": (1, False)}
+
+
+@st.composite
+def event_types(draw: st.DrawFn, variables: list[str]) -> str:
+    """Return the text of an event type."""
+    name = draw(st.sampled_from(sorted(SIGNALS)))
+    arity, is_attribute = SIGNALS[name]
+    parameter = st.sampled_from([*variables, *variables, "?", "*s", "u", "v"])
+    arguments = draw(st.lists(parameter, min_size=arity, max_size=arity))
+    text = name + (f"[{', '.join(arguments)}]" if arguments else "")
+    if is_attribute:
+        text += f":({draw(parameter)}, {draw(parameter)})"
+    return text
+
+
+@st.composite
+def chronicle_texts(draw: st.DrawFn) -> str:
+    """Return the text of a small chronicle all of whose variables are parameters."""
+    n_slots = draw(st.integers(1, 4))
+    types = [draw(event_types(VARIABLES)) for _ in range(n_slots)]
+    names = draw(
+        st.lists(st.sampled_from(["t1", "t2", "t3", "t4"]), min_size=n_slots, max_size=n_slots)
+    )
+    if draw(st.booleans()):
+        names = ["t1", "t2", "t3", "t4"][:n_slots]
+    bound = sorted({v for v in VARIABLES for t in types if v in t})
+    lines = [f"event({t}, {name})" for t, name in zip(types, names, strict=True)]
+    instants = sorted(set(names))
+    pick = st.sampled_from(instants)
+    offset = st.sampled_from(["", "", " + 1", " - 1", " + 2", " - 3"])
+    for _ in range(draw(st.integers(0, 3))):
+        first, second = draw(pick), draw(pick)
+        if first != second:
+            order = draw(st.sampled_from(["<", "<=", "<=", "<", "=", ">="]))
+            lower = draw(st.integers(-2, 3))
+            upper = lower + draw(st.integers(0, 4))
+            lines.append(
+                draw(
+                    st.sampled_from(
+                        [
+                            f"{first} {order} {second}{draw(offset)}",
+                            f"{second} - {first} in [{lower}, {upper}]",
+                            f"{second} - {first} in [{lower}, oo[",
+                        ]
+                    )
+                )
+            )
+    for _ in range(draw(st.integers(0, 2))):
+        interval = f"({draw(pick)}{draw(offset)}, {draw(pick)}{draw(offset)})"
+        counted = draw(event_types(bound))
+        least = draw(st.integers(0, 2))
+        most = draw(st.sampled_from(["oo", least, least + 1]))
+        lines.append(
+            draw(
+                st.sampled_from(
+                    [
+                        f"noevent({counted}, {interval})",
+                        f"occurs({least}, {most}, {counted}, {interval})",
+                    ]
+                )
+            )
+        )
+    if len(bound) > 1 and draw(st.booleans()):
+        lines.append(f"{bound[0]} {draw(st.sampled_from(['!=', '==']))} {bound[1]}")
+    parameters = f"[{', '.join(bound)}]" if bound else ""
+    return f"chronicle c{parameters} {{ {'; '.join(lines)} }}"
+
+
+@st.composite
+def streams(draw: st.DrawFn) -> list[Event]:
+    """Return some events in order of time, often several at one instant."""
+    value = st.sampled_from(["u", "v"])
+    events = []
+    time = 0
+    for _ in range(draw(st.integers(0, 9))):
+        time += draw(st.sampled_from([0, 0, 1, 1, 2, 3]))
+        name = draw(st.sampled_from(sorted(SIGNALS)))
+        arity, is_attribute = SIGNALS[name]
+        arguments = tuple(draw(value) for _ in range(arity))
+        before = draw(st.sampled_from(["u", "v", None])) if is_attribute else None
+        after = draw(value) if is_attribute else None
+        events.append(Event(name, arguments, before, after, TimePoint(time * MS)))
+    return events
+
+
+def flat(recognition: Recognition) -> tuple[object, ...]:
+    """Return a recognition in the form of the naive enumeration."""
+    values = {f"?{name}": value for name, value in recognition.arguments.items()}
+    times = tuple(sorted(recognition.instants.items()))
+    return (recognition.recognised_at, times, tuple(sorted(values.items())))
+
+
+def run(recogniser: Recogniser, events: list[Event], end: int) -> list[Recognition]:
+    """Push events instant by instant, and then let time pass until *end*."""
+    found = []
+    for time, together in groupby(events, key=lambda event: event.time):
+        found += recogniser.push(time, together)
+    return found + recogniser.advance(TimePoint(end))
+
+
+@settings(derandomize=True, deadline=None, max_examples=600)
+@given(chronicle_texts(), streams(), st.integers(0, 8), st.data())
+def test_recogniser_agrees_with_the_meaning(
+    text: str, events: list[Event], wait: int, data: st.DataObject
+) -> None:
+    """The recogniser finds the matches that the meaning says, once each and at their time."""
+    file = parse_chronicles(text)
+    assume(not faults(file))
+    recogniser = Recogniser(models_from_chronicles(file))
+    end = (events[-1].time if events else 0) + wait * MS
+    found = []
+    clock = -1
+    for event in events:
+        if data.draw(st.booleans()):
+            found += recogniser.advance(event.time)
+        new = recogniser.push(event.time, [event])
+        assert all(clock <= one.recognised_at <= event.time for one in new)
+        found += new
+        clock = event.time
+    found += recogniser.advance(TimePoint(end))
+
+    assert sorted(map(flat, found)) == enumerate_recognitions(file.chronicles[0], events, end)
