@@ -1,0 +1,265 @@
+"""The link process: links the objects of a stream to objects of a more specific sort.
+
+It runs the state machine of Heintz (2009), figure 8.4, and of Heintz, Kvarnström and Doherty
+(2009), section IV.B, for all objects of a frame at once. An unlinked lower object waits for its
+establish condition, and for the reestablish condition of each unlinked upper object; a linked one
+is followed by its maintain condition. What the sources leave open is settled as follows.
+
+- Conditions that begin because the input changes (an object appears or vanishes) are about the
+  present state on; those that begin because a verdict fell are about the next state on.
+- If establish and reestablish become true at once, reestablish wins: no new symbol without need.
+- If several reestablish conditions become true at once, each object takes part in at most one
+  link; see `anchoring.candidates.best_pairs`.
+- A lower object that is itself only predicted (its column `observed` is false) is as good as
+  vanished, unless the unit trusts predictions.
+"""
+
+from collections.abc import Iterable
+from typing import Any
+
+import numpy as np
+
+from anchoring.candidates import Candidates, Unlinked
+from anchoring.conditions import Condition
+from anchoring.links import LinkSettings, LinkUnit
+from anchoring.rows import Mask, Rows, with_rows
+from anchoring.structures import LinkHistory
+from dyknow.mtl.monitors import MonitorColumns
+from dyknow.streams.sample import Sample
+from dyknow.streams.table import Ids, Table, concatenate, positions_of
+from dyknow.time import TimePoint
+
+__all__ = ["LinkProcess"]
+
+_LINKED = -1
+"""As `since` of an upper object: it is linked."""
+
+
+class LinkProcess:
+    """A computational unit from tables of lower objects to tables of upper objects.
+
+    For each sample that arrives a sample with the states of all upper objects is emitted, valid
+    at the same time. Samples that are not later than the one before are ignored.
+
+    Args:
+        unit: Computes the states of the upper objects.
+        settings: The conditions, and when an upper object is given up.
+
+    Attributes:
+        history: All links ever made.
+    """
+
+    def __init__(self, unit: LinkUnit, settings: LinkSettings) -> None:
+        self.history = LinkHistory()
+        self._unit = unit
+        self._remove_after = settings.remove_after
+        self._waiting = _Waiting(Condition(settings.establish, unit))
+        self._standing = _Standing(Condition(settings.maintain, unit))
+        self._candidates = Candidates(Condition(settings.reestablish, unit), unit)
+        self._uppers = _Uppers(Table(unit.sort, (), {}))
+        self._next_id = 1
+        self._step = 0
+        self._time: TimePoint | None = None
+
+    def push(self, now: TimePoint, inputs: tuple[Sample[Any], ...]) -> Iterable[Sample[Table]]:
+        """Take in the lower objects and return the upper ones at the same valid time."""
+        sample = inputs[0]
+        if not isinstance(sample.value, Table) or sample.available_time != now:
+            return ()
+        if self._time is not None and sample.valid_time <= self._time:
+            return ()
+        self._time = sample.valid_time
+        self._take_in(sample.value, sample.valid_time)
+        return (Sample(self._unit.published(self._uppers.table), sample.valid_time, now),)
+
+    def advance(self, now: TimePoint) -> Iterable[Sample[Table]]:
+        """Return nothing: a link process speaks when a sample arrives."""
+        del now
+        return ()
+
+    def due(self) -> TimePoint | None:
+        """Return None: a link process speaks when a sample arrives."""
+        return None
+
+    def _take_in(self, lower: Table, now: TimePoint) -> None:
+        self._step += 1
+        if not self._uppers.table.columns and lower.columns:
+            self._uppers.table = self._unit.create(_NOBODY, lower.select(_NOBODY), now)
+        observed = lower.columns.get("observed", np.ones(len(lower), dtype=np.bool_))
+        self._drop_vanished(lower, observed, now)
+        self._predict(np.flatnonzero(self._uppers.since != _LINKED), now)
+        broken = self._break_links(lower, now)
+        self._begin_waiting(lower.ids[observed], broken)
+        self._link_waiting(lower, now)
+        self._compute(lower, observed, now)
+        self._waiting.add(broken, self._step + 1)
+        self._remove_unanchored(now)
+
+    def _drop_vanished(self, lower: Table, observed: Mask, now: TimePoint) -> None:
+        """Remove the links of lower objects that are gone, and what waits for them."""
+        at = positions_of(self._standing.lower, lower.ids)
+        there = at >= 0
+        if not self._unit.trusts_predictions:
+            there[there] = observed[at[there]]
+        self._unlink(self._standing.upper[~there], self._step, now)
+        self._standing.keep(there)
+        self._waiting.keep(np.isin(self._waiting.ids, lower.ids[observed]))
+
+    def _predict(self, rows: Rows, now: TimePoint) -> None:
+        if len(rows):
+            table = self._uppers.table
+            predicted = self._unit.predict(table.select(rows), now)
+            self._uppers.table = with_rows(table, rows, predicted)
+
+    def _break_links(self, lower: Table, now: TimePoint) -> Ids:
+        """Remove the links whose maintain condition has become false; return their lower ids."""
+        standing, table = self._standing, self._uppers.table
+        at = positions_of(standing.lower, lower.ids)
+        on = positions_of(standing.upper, table.ids)
+        truth = standing.condition.truth(lower.select(at), table.select(on))
+        violated = standing.monitor.step(now, truth) < 0
+        broken = standing.lower[violated]
+        self._unlink(standing.upper[violated], self._step + 1, now)
+        standing.keep(~violated)
+        self._predict(on[violated], now)
+        return broken
+
+    def _unlink(self, upper: Ids, since: int, now: TimePoint) -> None:
+        uppers = self._uppers
+        uppers.since[positions_of(upper, uppers.table.ids)] = since
+        for object_id in upper.tolist():
+            self.history.remove(uppers.table.symbol(object_id), now)
+
+    def _begin_waiting(self, observed: Ids, broken: Ids) -> None:
+        known = np.concatenate((self._standing.lower, self._waiting.ids, broken))
+        self._waiting.add(observed[~np.isin(observed, known)], self._step)
+
+    def _link_waiting(self, lower: Table, now: TimePoint) -> None:
+        """Evaluate establish and reestablish, and make the links that follow."""
+        waiting, uppers = self._waiting, self._uppers
+        table = lower.select(positions_of(waiting.ids, lower.ids))
+        truth = waiting.condition.truth(table, uppers.table.select(_NOBODY))
+        new = waiting.monitor.step(now, truth) > 0
+        free = np.flatnonzero((uppers.since != _LINKED) & (uppers.since <= self._step))
+        at, on = self._candidates.step(
+            now,
+            self._step,
+            Unlinked(table, waiting.since),
+            Unlinked(uppers.table.select(free), uppers.since[free]),
+        )
+        new[at] = False
+        self._link(table.select(at), uppers.table.ids[free[on]], now)
+        self._link(table.select(new), self._created(table.select(new), now), now)
+        new[at] = True
+        waiting.keep(~new)
+
+    def _created(self, lower: Table, now: TimePoint) -> Ids:
+        ids = np.arange(self._next_id, self._next_id + len(lower), dtype=np.int64)
+        self._next_id += len(lower)
+        if len(lower):
+            self._uppers.add(self._unit.create(ids, lower, now))
+        return ids
+
+    def _link(self, lower: Table, upper: Ids, now: TimePoint) -> None:
+        self._standing.add(lower.ids, upper)
+        self._uppers.since[positions_of(upper, self._uppers.table.ids)] = _LINKED
+        for from_id, to_id in zip(lower.ids.tolist(), upper.tolist(), strict=True):
+            self.history.make(self._uppers.table.symbol(to_id), lower.symbol(from_id), now)
+
+    def _compute(self, lower: Table, observed: Mask, now: TimePoint) -> None:
+        """Compute the states of all linked upper objects."""
+        standing, uppers = self._standing, self._uppers
+        on = positions_of(standing.upper, uppers.table.ids)
+        order = np.argsort(on)
+        on, at = on[order], positions_of(standing.lower[order], lower.ids)
+        if len(on):
+            states = self._unit.update(uppers.table.select(on), lower.select(at), now)
+            uppers.table = with_rows(uppers.table, on, states)
+        uppers.anchored_at[on[observed[at]]] = now
+
+    def _remove_unanchored(self, now: TimePoint) -> None:
+        """Give up the upper objects that no percept has fed for too long."""
+        uppers = self._uppers
+        kept = now - uppers.anchored_at < self._remove_after
+        if kept.all():
+            return
+        linked = uppers.since == _LINKED
+        self._unlink(uppers.table.ids[~kept & linked], self._step, now)
+        uppers.keep(kept)
+        self._standing.keep(np.isin(self._standing.upper, uppers.table.ids))
+
+
+class _Waiting:
+    """Lower objects without a link, and how far their establish condition has come.
+
+    Attributes:
+        ids: shape (n,).
+        since: shape (n,), the number of the first state that the condition is about.
+    """
+
+    def __init__(self, condition: Condition) -> None:
+        self.condition = condition
+        self.monitor = MonitorColumns(condition.table)
+        self.ids: Ids = _NOBODY
+        self.since: Ids = _NOBODY
+
+    def add(self, ids: Ids, since: int) -> None:
+        self.monitor.add(len(ids))
+        self.ids = np.concatenate((self.ids, ids))
+        self.since = np.concatenate((self.since, np.full(len(ids), since)))
+
+    def keep(self, mask: Mask) -> None:
+        self.monitor.keep(mask)
+        self.ids, self.since = self.ids[mask], self.since[mask]
+
+
+class _Standing:
+    """The links, and how far their maintain condition has come.
+
+    Attributes:
+        lower: shape (n,), ids of the objects linked from.
+        upper: shape (n,), ids of the objects linked to.
+    """
+
+    def __init__(self, condition: Condition) -> None:
+        self.condition = condition
+        self.monitor = MonitorColumns(condition.table)
+        self.lower: Ids = _NOBODY
+        self.upper: Ids = _NOBODY
+
+    def add(self, lower: Ids, upper: Ids) -> None:
+        self.monitor.add(len(lower))
+        self.lower = np.concatenate((self.lower, lower))
+        self.upper = np.concatenate((self.upper, upper))
+
+    def keep(self, mask: Mask) -> None:
+        self.monitor.keep(mask)
+        self.lower, self.upper = self.lower[mask], self.upper[mask]
+
+
+class _Uppers:
+    """The upper objects, linked or not.
+
+    Attributes:
+        table: Their states.
+        since: shape (n,), the number of the state since which each is unlinked, or `_LINKED`.
+        anchored_at: shape (n,), when each was last linked to an observed object.
+    """
+
+    def __init__(self, table: Table) -> None:
+        self.table = table
+        self.since: Ids = _NOBODY
+        self.anchored_at: Ids = _NOBODY
+
+    def add(self, table: Table) -> None:
+        self.table = concatenate([self.table, table])
+        nothing = np.full(len(table), _LINKED, dtype=np.int64)
+        self.since = np.concatenate((self.since, nothing))
+        self.anchored_at = np.concatenate((self.anchored_at, nothing))
+
+    def keep(self, mask: Mask) -> None:
+        self.table = self.table.select(mask)
+        self.since, self.anchored_at = self.since[mask], self.anchored_at[mask]
+
+
+_NOBODY: Ids = np.empty(0, dtype=np.int64)
