@@ -39,6 +39,7 @@ _COMPUTE: dict[str, Callable[[Any, Any], Any]] = {
     "*": operator.mul,
     "/": operator.truediv,
 }
+_KINDS_BY_TYPE = {bool: "boolean", int: "number", float: "number", str: "text"}
 _KINDS = {"b": "boolean", "i": "number", "u": "number", "f": "number", "U": "text", "O": "text"}
 
 
@@ -91,6 +92,7 @@ class AtomColumns:
         found = {text_from_formula(t): None for t in terms if isinstance(t, Feature)}
         self.features = tuple(found)
         self._evaluate = [_compiled_atom(atom) for atom in self.atoms]
+        self._printed = frozenset(found)
         self._bracketed = {term: _bracketed(term) for term in self.features}
 
     def of_features(
@@ -114,7 +116,9 @@ class AtomColumns:
 
     def of_state(self, state: Mapping[str, Any]) -> int:
         """Return the truth of atom number i in bit i, for one state of plain values."""
-        values = {term: self._value(term, state) for term in self.features}
+        values = state
+        if not self._printed <= state.keys():
+            values = {term: self._value(term, state) for term in self.features}
         return sum(bool(evaluate(values)) << at for at, evaluate in enumerate(self._evaluate))
 
     def _value(self, term: str, features: Mapping[str, Any]) -> Any:
@@ -134,8 +138,8 @@ def _bracketed(term: str) -> str:
 
 def _compiled_atom(atom: Atom) -> _Evaluate:
     if isinstance(atom, Feature):
-        term, value = text_from_formula(atom), _compiled_term(atom)
-        return lambda values: _of_kind("boolean", value(values), term)
+        term = text_from_formula(atom)
+        return lambda values: _of_kind("boolean", values[term], term)
     return _compiled_comparison(atom)
 
 
@@ -190,14 +194,9 @@ def _compiled_arithmetic(term: syntax.Arithmetic) -> _Evaluate:
 
 def _kind(value: Any, text: str) -> str:
     """Return whether a value or a column is boolean, a number or a text."""
-    if isinstance(value, np.ndarray):
+    kind = _KINDS_BY_TYPE.get(type(value))
+    if kind is None and isinstance(value, np.ndarray | np.generic):
         kind = _KINDS.get(value.dtype.kind)
-    elif isinstance(value, bool | np.bool_):
-        kind = "boolean"
-    elif isinstance(value, int | float | np.number):
-        kind = "number"
-    else:
-        kind = "text" if isinstance(value, str) else None
     if kind is None:
         raise FeatureError(text, "a boolean, a number or a text", _described(value))
     return kind

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from dyknow.mtl.progression import ProgressionTable, Truths, Verdicts
+from dyknow.mtl.progression import ProgressionTable, Residuals, Truths, Verdicts
 from dyknow.mtl.syntax import Formula, Verdict
 from dyknow.time import Duration, TimePoint
 
@@ -31,7 +31,7 @@ class MonitorColumns:
 
     def __init__(self, table: ProgressionTable) -> None:
         self.table = table
-        self.residuals: npt.NDArray[np.int64] = np.empty(0, dtype=np.int64)
+        self.residuals: Residuals = np.empty(0, dtype=np.int64)
         self._time: TimePoint | None = None
         table.register(self)
 
@@ -64,9 +64,7 @@ class MonitorColumns:
         Returns:
             shape (n,), int8: 1 true, 0 undecided, -1 false (`Verdict`).
         """
-        elapsed = Duration(1) if self._time is None else Duration(now - self._time)
-        if elapsed <= 0:
-            raise ValueError(f"states must be in order of time: {now} ns after {self._time} ns")
+        elapsed = _elapsed(self._time, now)
         self.residuals = self.table.progress(self.residuals, truth, elapsed)
         self._time = now
         verdicts = self.table.verdicts(self.residuals)
@@ -88,16 +86,15 @@ class Monitor:
 
     Attributes:
         table: The formula and its residuals; may be shared with other monitors.
-        residuals: shape (1,), the number of the residual in *table*.
     """
 
     def __init__(self, formula: Formula | ProgressionTable) -> None:
         if not isinstance(formula, ProgressionTable):
             formula = ProgressionTable(formula)
         self.table: ProgressionTable = formula
-        self.residuals: npt.NDArray[np.int64] = np.array([self.table.initial], dtype=np.int64)
+        self._residual = formula.initial
         self._time: TimePoint | None = None
-        self.table.register(self)
+        formula.register(self)
 
     def step(self, now: TimePoint, state: Mapping[str, Any]) -> Verdict:
         """Take in the state at *now*, later than the one before, and return the verdict.
@@ -109,22 +106,37 @@ class Monitor:
         Raises:
             FeatureError: A feature is missing, of the wrong kind, or NaN.
         """
-        elapsed = Duration(1) if self._time is None else Duration(now - self._time)
-        if elapsed <= 0:
-            raise ValueError(f"states must be in order of time: {now} ns after {self._time} ns")
+        elapsed = _elapsed(self._time, now)
         bits = self.table.columns.of_state(state)
-        number = self.table.successor(int(self.residuals[0]), bits, elapsed)
-        self.residuals[0] = number
+        self._residual = self.table.successor(self._residual, bits, elapsed)
         self._time = now
         self.table.collect_when_full()
-        return self.verdict
+        return self.table.verdict(self._residual)
+
+    @property
+    def residuals(self) -> Residuals:
+        """The number of the residual in the table, shape (1,)."""
+        return np.array([self._residual], dtype=np.int64)
+
+    @residuals.setter
+    def residuals(self, numbers: Residuals) -> None:
+        (self._residual,) = numbers.tolist()
 
     @property
     def verdict(self) -> Verdict:
         """The present verdict."""
-        return Verdict(int(self.table.verdicts(self.residuals)[0]))
+        return self.table.verdict(self._residual)
 
     @property
     def residual(self) -> Formula:
         """What must hold from now on."""
-        return self.table.residual(int(self.residuals[0]))
+        return self.table.residual(self._residual)
+
+
+def _elapsed(last: TimePoint | None, now: TimePoint) -> Duration:
+    """Return the time since the last state; one nanosecond if there was none."""
+    if last is None:
+        return Duration(1)
+    if now <= last:
+        raise ValueError(f"states must be in order of time: {now} ns after {last} ns")
+    return Duration(now - last)

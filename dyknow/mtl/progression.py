@@ -30,7 +30,9 @@ Verdicts = npt.NDArray[np.int8]
 
 _FALSE, _TRUE, _INITIAL = 0, 1, 2
 _CELLS = 1 << 21
+_MOST_REMEMBERED = 1 << 16
 _MOST_TABULATED_ATOMS = 8
+_VERDICTS = (Verdict.FALSE, Verdict.TRUE)
 _UNKNOWN = -1
 _NO_TABLE = np.empty(0, dtype=np.int64)
 
@@ -59,7 +61,7 @@ class ProgressionTable:
         limit: How many residuals are kept before unused ones are forgotten.
     """
 
-    def __init__(self, formula: Formula, limit: int = 1 << 16) -> None:
+    def __init__(self, formula: Formula, limit: int = 1 << 15) -> None:
         """Make the table.
 
         Raises:
@@ -131,6 +133,10 @@ class ProgressionTable:
         verdicts -= residuals == _FALSE
         return verdicts
 
+    def verdict(self, number: int) -> Verdict:
+        """Return the verdict of one residual."""
+        return _VERDICTS[number] if number < _INITIAL else Verdict.UNDECIDED
+
     def residual(self, number: int) -> Formula:
         """Return a residual as a formula about the time after the last state.
 
@@ -171,7 +177,7 @@ class ProgressionTable:
         key = (number, bits, elapsed)
         following = self._memory.get(key)
         if following is None:
-            if len(self._memory) >= _CELLS // 8:
+            if len(self._memory) >= _MOST_REMEMBERED:
                 self._memory.clear()
             following = self._memory[key] = self._compute(number, bits, elapsed)
         return following
