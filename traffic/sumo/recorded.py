@@ -8,6 +8,7 @@ counter-clockwise from east), `speed` (m/s), `length`, `width` (metres), and if 
 rows.
 """
 
+import warnings
 import zipfile
 from collections.abc import Iterable, Iterator, Sequence
 from itertools import pairwise
@@ -113,22 +114,33 @@ def _rows(frame: Frame) -> pd.DataFrame:
 
 def _arrays(rows: pd.DataFrame) -> dict[str, Any]:
     return {
-        name: rows[name].to_numpy(dtype=str) if name in _TEXTS else rows[name].to_numpy()
+        name: rows[name].to_numpy(dtype=str if name in _TEXTS else np.float64)
         for name in rows.columns
     }
 
 
 def _read(path: Path) -> pd.DataFrame:
     try:
-        if path.suffix == ".npz":
-            with np.load(path, allow_pickle=False) as arrays:
-                return pd.DataFrame({name: arrays[name] for name in arrays.files})
-        texts = dict.fromkeys(_TEXTS, str)
-        return pd.read_csv(path, dtype=texts, keep_default_na=False, na_values=[""])
+        return _read_arrays(path) if path.suffix == ".npz" else _read_text(path)
     except OSError as error:
         raise RecordingError(path, f"cannot be read: {error.strerror or error}") from error
-    except (ValueError, zipfile.BadZipFile) as error:
+    except (ValueError, zipfile.BadZipFile, pd.errors.ParserWarning) as error:
         raise RecordingError(path, f"is not a recording: {error}") from error
+
+
+def _read_arrays(path: Path) -> pd.DataFrame:
+    with path.open("rb") as file, np.load(file, allow_pickle=False) as arrays:
+        return pd.DataFrame({name: arrays[name] for name in arrays.files})
+
+
+def _read_text(path: Path) -> pd.DataFrame:
+    texts = dict.fromkeys(_TEXTS, str)
+    with warnings.catch_warnings():
+        # pandas only warns of rows that are longer than the head
+        warnings.simplefilter("error", pd.errors.ParserWarning)
+        return pd.read_csv(
+            path, dtype=texts, keep_default_na=False, na_values=[""], index_col=False
+        )
 
 
 def _checked(rows: pd.DataFrame, path: Path) -> pd.DataFrame:
