@@ -7,13 +7,11 @@ complete list of what flows between them.
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
-from functools import partial
+from functools import cache, partial
 from pathlib import Path
 from typing import Any
 
 import numpy as np
-from chronicles.processes import ChronicleRecogniser
-from perception.processes import ColourCamera, ThermalCamera, VisionPercepts
 
 from anchoring.cars import Car
 from anchoring.links import LinkSettings, LinkUnit
@@ -21,7 +19,7 @@ from anchoring.on_road_objects import OnRoadObject
 from anchoring.processes import LinkProcess
 from anchoring.structures import LinkHistory, ObjectLinkageStructures
 from anchoring.world_objects import WorldObject
-from chronicles.parser import parse_chronicles
+from chronicles.processes import ChronicleRecogniser
 from dyknow.kpl.check import check
 from dyknow.kpl.parser import parse_specification
 from dyknow.kpl.plan import Implementations, Network, build_network
@@ -29,11 +27,13 @@ from dyknow.kpl.syntax import Specification
 from dyknow.mtl.syntax import Formula
 from dyknow.streams.process import Source
 from dyknow.streams.sample import Sample
-from dyknow.time import TimePoint
+from dyknow.time import Duration, TimePoint
 from networks.markings import MarkingKind
 from networks.roads import RoadMap
 from perception.camera import Camera
-from perception.scene import Ground
+from perception.painting import GroundPainter
+from perception.processes import ColourCamera, ThermalCamera, VisionPercepts, make_painter
+from perception.scene import Ground, build_surroundings
 from traffic.bundled import data_folder
 from traffic.features.changes import Changes
 from traffic.features.link_turns import LinkTurns
@@ -141,13 +141,13 @@ def _sources(world: World) -> dict[str, Any]:
 
 
 def _units(world: World) -> dict[str, Any]:
-    colour, thermal, positions = world.generator.spawn(3)
-    ground = _ground(world.road_map)
+    country, colour, thermal, positions = world.generator.spawn(4)
+    painter = cache(lambda: _painter(world.road_map, country))
     vocabularies = {"link": world.road_map.links, "crossing": world.road_map.crossings}
     return {
-        "ColourCamera": partial(ColourCamera, ground, colour),
-        "ThermalCamera": partial(ThermalCamera, ground, thermal),
-        "VisionPercepts": partial(VisionPercepts, world.road_map.road_polygons()),
+        "ColourCamera": lambda: ColourCamera(painter=painter(), generator=colour),
+        "ThermalCamera": lambda: ThermalCamera(painter=painter(), generator=thermal),
+        "VisionPercepts": lambda: VisionPercepts(roads=world.road_map.road_polygons()),
         "NoisyPositions": partial(NoisyPositions, positions),
         "Moving": Moving,
         "StableFor": StableFor,
@@ -158,11 +158,19 @@ def _units(world: World) -> dict[str, Any]:
     }
 
 
-def _chronicles(*, file: str) -> ChronicleRecogniser:
+def _chronicles(*, file: str, max_delay: Duration) -> ChronicleRecogniser:
+    """Recognise the chronicles of a file: one of the bundled ones by name, or any by its path."""
     path = Path(file)
     if not path.suffix:
         path = data_folder() / "chronicles" / f"{file}.chronicle"
-    return ChronicleRecogniser(parse_chronicles(path.read_text(encoding="utf-8"), str(path)))
+    models = models_from_chronicles(read_chronicles(path))
+    return ChronicleRecogniser(models, max_delay=max_delay)
+
+
+def _painter(road_map: RoadMap, generator: np.random.Generator) -> GroundPainter:
+    """Return what paints the country for both cameras."""
+    ground = _ground(road_map)
+    return make_painter(ground, build_surroundings(ground, generator), generator)
 
 
 def _ground(road_map: RoadMap) -> Ground:
