@@ -19,6 +19,8 @@ from anchoring.on_road_objects import OnRoadObject
 from anchoring.processes import LinkProcess
 from anchoring.structures import LinkHistory, ObjectLinkageStructures
 from anchoring.world_objects import WorldObject
+from chronicles.models import models_from_chronicles
+from chronicles.parser import read_chronicles
 from chronicles.processes import ChronicleRecogniser
 from dyknow.kpl.check import check
 from dyknow.kpl.parser import parse_specification
