@@ -90,20 +90,18 @@ class Candidates:
 
     def _keep(self, lower: Unlinked, upper: Unlinked) -> None:
         """Drop the pairs of which an object is gone, or was linked in the meantime."""
-        if len(self._lower):
-            at, on = self._rows(lower, upper)
-            kept = (at >= 0) & (on >= 0)
-            begin = np.maximum(lower.since[at[kept]], upper.since[on[kept]])
-            kept[kept] = begin == self._begin[kept]
-            self._pairs.keep(kept)
-            self._lower, self._upper = self._lower[kept], self._upper[kept]
-            self._begin = self._begin[kept]
-        if len(self._far_lower):
-            at = positions_of(self._far_lower, lower.table.ids)
-            own = lower.since[np.maximum(at, 0)] == self._far_begin
-            later = np.isin(self._far_begin, upper.since)
-            earlier = self._far_begin > lower.since[np.maximum(at, 0)]
-            self._keep_far((at >= 0) & (own | (later & earlier)))
+        at, on = self._rows(lower, upper)
+        kept = (at >= 0) & (on >= 0)
+        begin = np.maximum(lower.since[at[kept]], upper.since[on[kept]])
+        kept[kept] = begin == self._begin[kept]
+        self._pairs.keep(kept)
+        self._lower, self._upper = self._lower[kept], self._upper[kept]
+        self._begin = self._begin[kept]
+        at = positions_of(self._far_lower, lower.table.ids)
+        self._keep_far(at >= 0)
+        since = lower.since[at[at >= 0]]
+        later = (self._far_begin > since) & np.isin(self._far_begin, upper.since)
+        self._keep_far((self._far_begin == since) | later)
 
     def _keep_far(self, kept: Mask) -> None:
         self._far.keep(kept)

@@ -149,7 +149,8 @@ class LinkProcess:
         )
         new[at] = False
         self._link(table.select(at), uppers.table.ids[free[on]], now)
-        self._link(table.select(new), self._created(table.select(new), now), now)
+        begun = table.select(np.flatnonzero(new)[np.argsort(table.ids[new])])
+        self._link(begun, self._created(begun, now), now)
         new[at] = True
         waiting.keep(~new)
 

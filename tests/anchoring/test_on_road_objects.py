@@ -157,7 +157,7 @@ def test_predicted_objects_branch_at_crossings():
     drive = Drive(roads, [arm], lambda _: 10.0)
     unit = OnRoadObject(roads)
     *_, (_, found) = _followed(roads, drive, 0, until=4.5)
-    found = unit.select_first(found) if hasattr(unit, "select_first") else found.select([0])
+    found = found.select(np.array([0]))
 
     predicted = unit.predict(found, nanoseconds(7.4))
 
@@ -165,7 +165,7 @@ def test_predicted_objects_branch_at_crossings():
     assert set(rows) == {0}
     assert len(points) == 3
     lower = percepts([1, 2, 3], points, nanoseconds(7.4))
-    upper = predicted.select([0, 0, 0])
+    upper = predicted.select(np.array([0, 0, 0]))
     distance = unit.feature("xydist", ("from", "to"), lower, upper)
     np.testing.assert_allclose(distance, 0.0, atol=1e-9)
 
@@ -192,7 +192,7 @@ def test_a_vehicle_put_on_the_wrong_road_gets_to_the_right_one():
     right, wrong = roads.roads.index("west_east"), roads.roads.index("east_west")
     drive = Drive(roads, [right], lambda t: 0.0 if t < 3 else 10.0, start=20.0)
     unit, world_unit = OnRoadObject(roads), WorldObject()
-    seen = percepts([1], [drive.position(0) + [0.0, 3.2]], 0)
+    seen = percepts([1], [drive.position(0) + np.array([0.0, 3.2])], 0)
     world = world_unit.create(seen.ids, seen, 0)
     found = unit.create(seen.ids, world_unit.published(world), 0)
     assert found["road"][0] == wrong
