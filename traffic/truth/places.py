@@ -61,25 +61,18 @@ class PlaceReader:
             else (np.full((4, len(lane)), -1, dtype=np.int32))
         )
         link, crossing, road, opposite = found
-        heading = frame.vehicles["heading"]
         position = frame.vehicles["position"]
-        against = self._faces_against(road, position, heading)
-        turned = against & (opposite >= 0)
-        road = np.where(turned, opposite, road)
-        sign = np.where(against & ~turned, -1.0, 1.0)
-        s, _ = self._map.project(position, road)
-        direction = self._map.direction_in_link[road] * sign
-        return TruePlaces(
-            link, crossing, direction, direction * self._map.position_along_link(road, s)
-        )
-
-    def _faces_against(
-        self, road: Indices, position: Floats, heading: Floats
-    ) -> npt.NDArray[np.bool_]:
         s, _ = self._map.project(position, road)
         along = self._map.heading_at(road, s)
-        against: npt.NDArray[np.bool_] = np.cos(heading - along) < 0  # false where it is NaN
-        return against
+        against = np.cos(frame.vehicles["heading"] - along) < 0  # false where it is NaN
+        crossed = against & (opposite >= 0)
+        if crossed.any():
+            road = np.where(crossed, opposite, road)
+            s[crossed], _ = self._map.project(position[crossed], road[crossed])
+        sign = np.where(against & ~crossed, -1.0, 1.0)
+        direction = self._map.direction_in_link[road] * sign
+        progress = direction * self._map.position_along_link(road, s)
+        return TruePlaces(link, crossing, direction, progress)
 
     def _learn(self) -> None:
         """Look up the lanes that the simulator has named since the last frame."""
