@@ -78,6 +78,8 @@ class RunRequest:
             raise RequestError(
                 "--position-noise", "a number of metres, at least 0", position_noise
             )
+        if overlay is not None:
+            _check_film(overlay)
         if seed < 0:
             raise RequestError("--seed", "a number of at least 0", seed)
         period = _period(sample_period, seen)
@@ -113,6 +115,15 @@ def _refuse(value: object, option: str, view: View) -> None:
         raise RequestError(
             option, f"nothing, because it only has a meaning with --view {view}", value
         )
+
+
+def _check_film(path: Path) -> None:
+    if path.suffix != ".mp4":
+        raise RequestError("--overlay", "a name that ends in .mp4", path)
+    if path.exists():
+        raise RequestError("--overlay", "a file that does not exist yet", path)
+    if not path.parent.is_dir():
+        raise RequestError("--overlay", "a file in a folder that exists", path)
 
 
 def _scenario(name: str | None, sumocfg: Path | None) -> Scenario:

@@ -3,6 +3,7 @@
 import math
 import time
 from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from pathlib import Path
 
 import numpy as np
@@ -15,6 +16,7 @@ from networks.reading import read_road_map
 from networks.roads import RoadMap
 from perception.camera import Calibration, Camera
 from traffic.errors import ScenarioError
+from traffic.overlaying import Overlay
 from traffic.request import RunRequest, View
 from traffic.results import RunResult, Timing, run_folder, write_result
 from traffic.scenarios import CameraSettings
@@ -24,6 +26,9 @@ from traffic.sumo.simulation import Frame, Simulation
 from traffic.system import MonitoringSystem, World
 
 __all__ = ["run_scenario"]
+
+_RECOGNITIONS = ("recognised_turns", "recognised_overtakes")
+_IMAGES = ("colour_images", "thermal_images")
 
 OnProgress = Callable[[float, float], None]
 """Told the seconds simulated so far and the seconds in all."""
@@ -45,9 +50,26 @@ def run_scenario(request: RunRequest, on_progress: OnProgress) -> tuple[RunResul
         open_simulation(request.scenario, folder / "sumo", traffic) as simulation,
     ):
         run = _Run(request, road_map, simulation, camera, sensors)
-        result = run.complete(on_progress)
+        with _film(request, camera, run, folder):
+            result = run.complete(on_progress)
         write_result(result, folder)
     return result, request.out
+
+
+@contextmanager
+def _film(request: RunRequest, camera: Camera | None, run: "_Run", folder: Path) -> Iterator[None]:
+    """Film what is believed while the block lasts, if that was asked for."""
+    if request.overlay is None or camera is None:
+        yield
+        return
+    overlay = Overlay(folder / "overlay.mp4", camera)
+    kept: Path | None = None
+    try:
+        run.show(overlay)
+        yield
+        kept = request.overlay
+    finally:
+        overlay.close(kept)
 
 
 class _Run:
@@ -67,12 +89,23 @@ class _Run:
         self._scorer = Scorer(road_map, simulation, footprint)
         vehicles = _Vehicles(simulation, self._scorer.observe_frame)
         world = World(road_map, vehicles, camera, sensors)
-        outputs = ("cars", "recognised_turns", "recognised_overtakes")
-        self._system = MonitoringSystem(world, _parameters(request), outputs)
+        outputs = ("cars", *_RECOGNITIONS)
+        images = _IMAGES if request.overlay is not None else ()
+        self._system = MonitoringSystem(world, _parameters(request), (*outputs, *images))
         network = self._system.network
         network.subscribe("cars", self._scorer.observe_cars)
-        network.subscribe("recognised_turns", self._note)
-        network.subscribe("recognised_overtakes", self._note)
+        for output in _RECOGNITIONS:
+            network.subscribe(output, self._note)
+
+    def show(self, overlay: Overlay) -> None:
+        """Let *overlay* receive what it shows."""
+        network = self._system.network
+        colour, thermal = _IMAGES
+        network.subscribe(colour, overlay.receive_colour)
+        network.subscribe(thermal, overlay.receive_thermal)
+        network.subscribe("cars", overlay.receive_cars)
+        for output in _RECOGNITIONS:
+            network.subscribe(output, overlay.receive_recognitions)
 
     def complete(self, on_progress: OnProgress) -> RunResult:
         """Run to the end and judge what was recognised."""
