@@ -126,10 +126,12 @@ class _Checker:
 
     def _source(self, source: Name) -> Faults:
         known = self._declared.sources
+        if source.text in known:
+            return
         if source.text in self._declared.units:
             unit = self._declared.units[source.text]
             yield ArityError(source.text, len(unit.inputs), 0, source.span)
-        elif source.text not in known:
+        else:
             nearest = nearest_name(source.text, known)
             yield UnknownNameError("source", source.text, source.span, nearest)
 
@@ -174,7 +176,8 @@ class _Checker:
 
     def _label(self, label: Label) -> Faults:
         name = text_from(label)
-        if name in self._declared.generators:
+        is_unbound = any(each.text in self._declared.parameters for each in label.objects)
+        if name in self._declared.generators or is_unbound:
             return
         if label.feature.text in self._declared.arities and any(self._arity(label)):
             yield from self._arity(label)

@@ -26,7 +26,7 @@ _KINDS: dict[Any, tuple[str, tuple[type[Value], ...]]] = {
     Duration: ("time", (Time, Number)),
     TimePoint: ("time", (Time, Number)),
     float: ("number", (Number,)),
-    int: ("number", (Number,)),
+    int: ("whole number", (Number,)),
     str: ("name", (Name, Text)),
     bool: ("truth value", (Truth,)),
 }
@@ -105,7 +105,8 @@ def _unfit(setting: Setting, parameter: inspect.Parameter) -> Iterator[Specifica
     if not annotations or not all(_is_known(each) for each in annotations):
         return
     allowed = {kind for each in annotations for kind in _KINDS[each][1]}
-    if type(setting.value) not in allowed:
+    must_be_whole = int in annotations and float not in annotations
+    if type(setting.value) not in allowed or (must_be_whole and _is_fraction(setting.value)):
         expected = " or ".join(dict.fromkeys(_KINDS[each][0] for each in annotations))
         what = f"the setting '{setting.name}'"
         found = kind_of(setting.value)
@@ -114,10 +115,15 @@ def _unfit(setting: Setting, parameter: inspect.Parameter) -> Iterator[Specifica
 
 def _argument(value: Value, parameter: inspect.Parameter | None) -> Any:
     annotations = _annotations(parameter)
-    is_time = Duration in annotations or TimePoint in annotations
-    if isinstance(value, Number) and is_time:
+    if isinstance(value, Number) and (Duration in annotations or TimePoint in annotations):
         return milliseconds(value.value)
+    if isinstance(value, Number) and float in annotations:
+        return float(value.value)
     return plain_value(value)
+
+
+def _is_fraction(value: Value) -> bool:
+    return isinstance(value, Number) and isinstance(value.value, float)
 
 
 def _is_known(annotation: Any) -> bool:
