@@ -38,6 +38,8 @@ class RecognitionResult(_Value):
         chronicle: Name of the model.
         arguments: Value of each variable of the model.
         times: Each instant of the model, milliseconds.
+        begin: When what a person would count began, milliseconds.
+        end: When it ended.
         recognised_at: When it was recognised, milliseconds.
         events: The changes that made it.
         truth: The simulator's id of each vehicle among the arguments, or None if a symbol
@@ -49,6 +51,8 @@ class RecognitionResult(_Value):
     chronicle: str
     arguments: dict[str, str]
     times: dict[str, float]
+    begin: float
+    end: float
     recognised_at: float
     events: list[dict[str, Any]]
     truth: dict[str, str] | None

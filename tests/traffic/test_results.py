@@ -28,6 +28,8 @@ RESULTS = st.builds(
             chronicle=TEXT,
             arguments=st.dictionaries(TEXT, TEXT, max_size=2),
             times=st.dictionaries(TEXT, NUMBER, max_size=2),
+            begin=NUMBER,
+            end=NUMBER,
             recognised_at=NUMBER,
             events=st.just([]),
             truth=st.one_of(st.none(), st.dictionaries(TEXT, TEXT, max_size=2)),

@@ -4,6 +4,7 @@ import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 
+from rich.box import SIMPLE_HEAD
 from rich.console import Console
 from rich.markup import escape
 from rich.progress import BarColumn, Progress, TextColumn, TimeRemainingColumn
@@ -57,7 +58,9 @@ def show_network(summary: MapSummary) -> None:
         f"{summary.network}: {len(summary.crossings)} crossings, {summary.links} links, "
         f"{summary.lanes} lanes, driving on the {side}"
     )
-    table = Table("crossing", "centre, m", "links", "ways through", title=escape(title))
+    table = Table(
+        "crossing", "centre, m", "links", "ways through", box=SIMPLE_HEAD, title=escape(title)
+    )
     for crossing in summary.crossings:
         turns = ", ".join(f"{count} {turn}" for turn, count in crossing.turns.items())
         x, y = crossing.centre
@@ -69,13 +72,19 @@ def show_network(summary: MapSummary) -> None:
 
 def _recognitions(result: RunResult) -> Table:
     table = Table(
-        "from s", "to s", "recognised", "who", "where", "truth agrees", title="Recognised"
+        "from s",
+        "to s",
+        "recognised",
+        "who",
+        "where",
+        "truth agrees",
+        box=SIMPLE_HEAD,
+        title="Recognised",
     )
     for recognition in result.recognitions:
-        times = recognition.times.values()
         table.add_row(
-            f"{min(times) / 1000:.1f}",
-            f"{max(times) / 1000:.1f}",
+            f"{recognition.begin / 1000:.1f}",
+            f"{recognition.end / 1000:.1f}",
             recognition.chronicle.replace("_", " "),
             _who(recognition),
             _where(recognition),
@@ -96,7 +105,9 @@ def _where(recognition: RecognitionResult) -> str:
 
 
 def _missed(result: RunResult) -> Table:
-    table = Table("from s", "to s", "manoeuvre", "vehicles", "where", title="Missed")
+    table = Table(
+        "from s", "to s", "manoeuvre", "vehicles", "where", box=SIMPLE_HEAD, title="Missed"
+    )
     for manoeuvre in result.missed:
         table.add_row(
             f"{manoeuvre.begin / 1000:.1f}",
@@ -110,7 +121,7 @@ def _missed(result: RunResult) -> Table:
 
 def _score(result: RunResult) -> Table:
     headings = ("", "true", "recognised", "correct", "precision", "recall", "not wholly in view")
-    table = Table(*headings, title="Score")
+    table = Table(*headings, box=SIMPLE_HEAD, title="Score")
     for kind, score in result.score.items():
         counts = (score.truth, score.recognised, score.correct)
         shares = (score.precision, score.recall)
@@ -129,7 +140,7 @@ def _timing(result: RunResult) -> Table:
         f"{timing.simulated_s:.0f} s simulated in {timing.wall_s:.1f} s: "
         f"{timing.real_time_factor:.1f} times real time"
     )
-    table = Table("stage", "CPU s", "share", title=title)
+    table = Table("stage", "CPU s", "share", box=SIMPLE_HEAD, title=title)
     total = sum(timing.stages.values()) or 1.0
     for stage, spent in sorted(timing.stages.items(), key=lambda item: -item[1]):
         table.add_row(stage, f"{spent:.2f}", f"{spent / total:.0%}")

@@ -146,6 +146,8 @@ class Scorer:
             chronicle=recognition.chronicle,
             arguments=recognition.arguments,
             times={name: at / MILLISECOND for name, at in recognition.instants.items()},
+            begin=recognition.begin / MILLISECOND,
+            end=recognition.end / MILLISECOND,
             recognised_at=recognition.recognised_at / MILLISECOND,
             events=[json_from_event(event) for event in recognition.events],
             truth=names or None,
