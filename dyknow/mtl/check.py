@@ -67,7 +67,8 @@ def faults(formula: Formula, vocabulary: Vocabulary | None = None) -> list[Speci
     Intervals, divisions by zero, repeated variables and the sorts of constants are always
     looked at; names, numbers of arguments and the sorts of features only with a *vocabulary*.
     """
-    found = list(_Checker(vocabulary).faults(formula, {}))
+    checker = _Checker(vocabulary)
+    found = [*checker.boolean_faults(formula, {}), *checker.faults(formula, {})]
     return sorted(found, key=lambda fault: fault.span.start)
 
 
@@ -81,6 +82,7 @@ class _Checker:
         self._vocabulary = vocabulary
 
     def faults(self, node: Node, scope: _Scope) -> Iterator[SpecificationError]:
+        """Yield the faults of a formula or a term."""
         match node:
             case syntax.Always(within) | syntax.Eventually(within) | syntax.Until(within):
                 yield from _interval_faults(within)
@@ -114,9 +116,10 @@ class _Checker:
         if isinstance(node, syntax.Comparison | syntax.Arithmetic | syntax.Minus):
             return
         for part in parts(node):
-            yield from self._boolean_faults(part, scope)
+            yield from self.boolean_faults(part, scope)
 
-    def _boolean_faults(self, node: Node, scope: _Scope) -> Iterator[SpecificationError]:
+    def boolean_faults(self, node: Node, scope: _Scope) -> Iterator[SpecificationError]:
+        """Yield a fault if *node* is a feature that is not boolean."""
         if isinstance(node, syntax.Feature):
             sort = self._sort(node, scope)
             if sort not in {None, BOOLEAN}:

@@ -197,7 +197,10 @@ def _syntax_error(error: UnexpectedInput, source: SourceText) -> FormulaSyntaxEr
         case UnexpectedCharacters():
             offset: Any = error.pos_in_stream
             found = f"'{source.text[offset]}'"
-            return _expected(error.allowed, found, Span(source, offset, offset + 1))
+            # Which bracket is open is known to the parser, not to the reader of characters.
+            return _expected(
+                set(error.allowed) - {"RPAR"}, found, Span(source, offset, offset + 1)
+            )
         case _:
             return FormulaSyntaxError(f"expected a formula: {error}", Span(source, 0, end))
 

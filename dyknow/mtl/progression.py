@@ -47,10 +47,10 @@ class ProgressionTable:
     """The residuals of one formula and how they follow from one another.
 
     A residual says what must hold after the last state. Numbers 0 and 1 stand for false and
-    true. A table may be shared; when it holds more than *limit* residuals, `collect_when_full`
+    true. A table may be shared; when it has more than *limit* residuals, `collect_when_full`
     forgets those that no registered holder has, and renumbers the others. Memory is bounded by
-    the residuals that are held at one time, or *limit* if that is more, and 16 MB of tables (or
-    those of one elapsed time, if that is more).
+    *limit* residuals (2 kB each), or twice those in use if that is more, 16 MB of tables (or
+    that of one elapsed time, if it is more), and 65 536 remembered steps of single objects.
 
     Attributes:
         formula: The formula.
@@ -78,6 +78,7 @@ class ProgressionTable:
         self._progression = Progression(graph)
         self._width = 1 << len(self.atoms)
         self._holders: WeakSet[Holder] = WeakSet()
+        self._in_use = 0
         self._forget_all()
 
     def _forget_all(self) -> None:
@@ -150,18 +151,19 @@ class ProgressionTable:
 
     def collect_when_full(self) -> None:
         """Forget residuals that no holder has, if there are more than `limit`."""
-        if len(self._residuals) <= self.limit:
+        if len(self._residuals) <= max(self.limit, 2 * self._in_use):
             return
         kept = self._residuals
         holders = list(self._holders)
         self._forget_all()
         new = np.zeros(len(kept), dtype=np.int64)
-        for number in np.unique(np.concatenate([h.residuals for h in holders])).tolist():
+        used = np.concatenate([_NO_TABLE, *(holder.residuals for holder in holders)])
+        for number in np.unique(used).tolist():
             residual = kept[number]
             new[number] = number if residual is None else self._number_of(residual)
         for holder in holders:
             holder.residuals = new[holder.residuals]
-        self.limit = max(self.limit, 2 * len(self._residuals))
+        self._in_use = len(self._residuals)
 
     def _progress_by_elapsed(
         self, residuals: Residuals, truth: Truths, elapsed: npt.NDArray[np.int64]
