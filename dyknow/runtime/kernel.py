@@ -15,8 +15,13 @@ from dyknow.runtime.accounts import Account
 from dyknow.runtime.agenda import Agenda
 from dyknow.runtime.generators import Label, Receive, StreamGenerator
 from dyknow.runtime.processes import RunningSource, RunningUnit
-from dyknow.runtime.subscriptions import StreamViolation, Subscription
-from dyknow.streams.adapter import adapter_for
+from dyknow.runtime.subscriptions import (
+    FilteredSubscription,
+    StreamViolation,
+    Subscription,
+)
+from dyknow.streams.adapter import Adapter, adapter_for
+from dyknow.streams.ordering import Filter
 from dyknow.streams.policy import Policy, Violation
 from dyknow.streams.process import ComputationalUnit, Source
 from dyknow.time import TimePoint
@@ -50,6 +55,7 @@ class Kernel:
         self._generators: dict[Label, StreamGenerator] = {}
         self._sources: list[RunningSource] = []
         self._units: list[RunningUnit] = []
+        self._subscriptions: list[Subscription] = []
         self._violation_receivers: list[Callable[[StreamViolation], None]] = []
         self._is_stopped = False
 
@@ -147,8 +153,9 @@ class Kernel:
     def _is_fed(self) -> bool:
         if not all(source.has_ended for source in self._sources):
             return True
-        waiting = (g.next_release is not None for g in self._generators.values())
-        return any(waiting)
+        if any(generator.next_release is not None for generator in self._generators.values()):
+            return True
+        return any(subscription.is_waiting for subscription in self._subscriptions)
 
     def _generator(self, label: Label) -> StreamGenerator:
         if label not in self._generators:
@@ -166,13 +173,30 @@ class Kernel:
     ) -> Callable[[], None]:
         generator = self._generator(provider)
         adapter = adapter_for(policy, self.now)
-        if adapter is not None:
-            subscription = Subscription(
-                generator, receiver, receive, adapter, self._agenda, self._publish
-            )
-            receive = subscription.receive
+        if isinstance(adapter, Filter):
+            receive = FilteredSubscription(
+                provider, receiver, receive, adapter, self._publish
+            ).receive
+        elif adapter is not None:
+            return self._connect_sampled(generator, receiver, receive, adapter)
         generator.connect(receive)
         return lambda: generator.disconnect(receive)
+
+    def _connect_sampled(
+        self, generator: StreamGenerator, receiver: Label, receive: Receive, adapter: Adapter
+    ) -> Callable[[], None]:
+        subscription = Subscription(
+            generator, receiver, receive, adapter, self._agenda, self._publish
+        )
+        self._subscriptions.append(subscription)
+        generator.connect(subscription.receive)
+
+        def end() -> None:
+            generator.disconnect(subscription.receive)
+            self._subscriptions.remove(subscription)
+            subscription.end()
+
+        return end
 
     def _publish(self, violation: StreamViolation) -> None:
         receiver = self._generators.get(violation.receiver)

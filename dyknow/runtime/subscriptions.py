@@ -8,11 +8,12 @@ from typing import Any
 from dyknow.runtime.agenda import Agenda
 from dyknow.runtime.generators import Label, Receive, StreamGenerator
 from dyknow.streams.adapter import Adapter
+from dyknow.streams.ordering import Filter
 from dyknow.streams.policy import Violation
 from dyknow.streams.sample import Sample
 from dyknow.time import TimePoint
 
-__all__ = ["StreamViolation", "Subscription"]
+__all__ = ["FilteredSubscription", "StreamViolation", "Subscription"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -30,6 +31,31 @@ class StreamViolation:
     violation: Violation
 
 
+Publish = Callable[[StreamViolation], None]
+"""Takes the violations of a stream."""
+
+
+class FilteredSubscription:
+    """Puts a filter between a generator and a receiver; there are no alarms to ring."""
+
+    def __init__(
+        self, provider: Label, receiver: Label, receive: Receive, adapter: Filter, publish: Publish
+    ) -> None:
+        self._provider = provider
+        self._receiver = receiver
+        self._receive = receive
+        self._filter = adapter
+        self._publish = publish
+
+    def receive(self, sample: Sample[Any]) -> None:
+        """Take in a sample of the generator."""
+        if self._filter.push(sample):
+            self._receive(sample)
+        elif self._filter.violations:
+            for violation in self._filter.take_violations():
+                self._publish(StreamViolation(self._provider, self._receiver, violation))
+
+
 class Subscription:
     """Puts an adapter between a generator and a receiver, and rings its alarms.
 
@@ -44,7 +70,7 @@ class Subscription:
         receive: Receive,
         adapter: Adapter,
         agenda: Agenda,
-        publish: Callable[[StreamViolation], None],
+        publish: Publish,
     ) -> None:
         self._provider = generator.label
         self._receiver = receiver
@@ -54,7 +80,18 @@ class Subscription:
         self._publish = publish
         self._waiting: deque[Sample[Any]] = deque()
         self._ticket = agenda.join(self, 2 * generator.depth + 1)
+        self._has_ended = False
         self._plan()
+
+    @property
+    def is_waiting(self) -> bool:
+        """Whether there are samples that will be available later."""
+        return bool(self._waiting)
+
+    def end(self) -> None:
+        """Hand on nothing more and let no alarm ring."""
+        self._has_ended = True
+        self._waiting.clear()
 
     def receive(self, sample: Sample[Any]) -> None:
         """Take in a sample of the generator."""
@@ -62,6 +99,8 @@ class Subscription:
 
     def turn(self, now: TimePoint) -> None:
         """Hand on what has become available and let the adapter's alarm ring."""
+        if self._has_ended:
+            return
         while self._waiting and self._waiting[0].available_time <= now:
             self._receive(self._waiting.popleft())
         due = self._adapter.due()

@@ -12,29 +12,44 @@ from dyknow.time import TimePoint, text_from_duration
 
 __all__ = ["Filter", "delay_violation"]
 
+_NEVER = 1 << 63
+_LEAST_STEP = {Order.ANY: -_NEVER, Order.MONOTONE: 0, Order.STRICT: 1}
+
 
 class Filter:
     """Hands on each sample at once if the policy allows it after the last one handed on.
 
     Since every constraint concerns one sample or two consecutive ones, the stream made is maximal:
     no sample that was left out could be put back.
+
+    Attributes:
+        violations: What has been noticed and not yet been taken.
     """
 
     def __init__(self, policy: Policy) -> None:
+        self.violations: list[Violation] = []
         self._policy = policy
+        self._start = policy.first
+        self._end = _NEVER if policy.end is None else policy.end
+        self._max_delay = _NEVER if policy.max_delay is None else policy.max_delay
+        self._least_step = _LEAST_STEP[policy.order]
+        self._wants_change = policy.change is ANY_CHANGE
         self._last: Sample[Any] | None = None
-        self._violations: list[Violation] = []
 
     def push(self, sample: Sample[Any]) -> tuple[Sample[Any], ...]:
         """Take in a sample; yield it or nothing."""
-        if not self._policy.covers(sample.valid_time):
+        valid_time, last = sample.valid_time, self._last
+        if valid_time < self._start or valid_time > self._end:
             return ()
-        violation = delay_violation(sample, self._policy) or self._order_violation(sample)
-        if violation is not None:
-            self._violations.append(violation)
+        if sample.available_time - valid_time > self._max_delay:
+            self.violations.append(delay_violation(sample, self._policy))
             return ()
-        if self._policy.change is ANY_CHANGE and self._is_repetition(sample):
-            return ()
+        if last is not None:
+            if valid_time - last.valid_time < self._least_step:
+                self.violations.append(self._order_violation(sample, last.valid_time))
+                return ()
+            if self._wants_change and _is_repetition(last, sample):
+                return ()
         self._last = sample
         return (sample,)
 
@@ -47,34 +62,21 @@ class Filter:
 
     def take_violations(self) -> list[Violation]:
         """Return the violations noticed since this was last asked."""
-        taken, self._violations = self._violations, []
+        taken, self.violations = self.violations, []
         return taken
 
-    def _order_violation(self, sample: Sample[Any]) -> Violation | None:
-        order = self._policy.order
-        if self._last is None or order is Order.ANY or sample.valid_time > self._last.valid_time:
-            return None
-        if order is Order.MONOTONE and sample.valid_time == self._last.valid_time:
-            return None
-        reason = (
-            f"the valid time does not follow {text_from_duration(self._last.valid_time)}"
-            f" in {order.value}"
-        )
+    def _order_violation(self, sample: Sample[Any], last: TimePoint) -> Violation:
+        order = self._policy.order.value
+        reason = f"the valid time does not follow {text_from_duration(last)} in {order}"
         return Violation(Constraint.ORDER, sample.valid_time, sample.available_time, reason)
 
-    def _is_repetition(self, sample: Sample[Any]) -> bool:
-        last = self._last
-        return (
-            last is not None
-            and last.valid_time == sample.valid_time
-            and are_equal(last.value, sample.value)
-        )
 
-
-def delay_violation(sample: Sample[Any], policy: Policy) -> Violation | None:
-    """Return the violation of a sample that is later than *policy* allows."""
-    if policy.allows_delay(sample.delay):
-        return None
+def delay_violation(sample: Sample[Any], policy: Policy) -> Violation:
+    """Return the violation that a sample is, being later than *policy* allows."""
     allowed = text_from_duration(policy.max_delay or 0)
     reason = f"expected a delay of at most {allowed}, found {text_from_duration(sample.delay)}"
     return Violation(Constraint.DELAY, sample.valid_time, sample.available_time, reason)
+
+
+def _is_repetition(last: Sample[Any], sample: Sample[Any]) -> bool:
+    return last.valid_time == sample.valid_time and are_equal(last.value, sample.value)

@@ -63,11 +63,10 @@ class Sampler:
 
     def push(self, sample: Sample[Any]) -> Iterator[Sample[Any]]:
         """Take in a sample; yield it and held ones if they are next."""
-        violation = delay_violation(sample, self._policy)
         if not self._policy.covers(sample.valid_time):
             return
-        if violation is not None:
-            self._grid.violations.append(violation)
+        if not self._policy.allows_delay(sample.delay):
+            self._grid.violations.append(delay_violation(sample, self._policy))
             return
         if self._expected is None:
             self._expected = sample.valid_time

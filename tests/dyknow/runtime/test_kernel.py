@@ -356,6 +356,37 @@ def test_a_subscription_can_be_ended():
     assert text(collected["a"]) == "0:a 5:b"
 
 
+def test_the_alarms_of_an_ended_subscription_are_silent():
+    """A sampled stream without a receiver makes and publishes nothing more."""
+    policy = Policy(
+        approximation=Approximation.MOST_RECENT,
+        change=SampleEvery(ms(10)),
+        max_delay=ms(0),
+        start=ms(0),
+    )
+    kernel, _ = network(sources={"a": "0:a"})
+    received = []
+    end = kernel.subscribe(Label("a"), received.append, policy)
+
+    kernel.run(until=ms(15))
+    end()
+    kernel.run(until=ms(50))
+
+    assert text(received) == "0:a 10:a"
+
+
+def test_what_a_policy_has_held_back_is_delivered_at_the_end():
+    """Samples that wait for the next nanosecond are not lost when the sources end."""
+    policy = Policy(change=SampleEvery(ms(100)), max_delay=ms(150), end=ms(200))
+    kernel, _ = network(sources={"a": "0:a 200:c 100:b@240"})
+    received = []
+    kernel.subscribe(Label("a"), received.append, policy)
+
+    kernel.run()
+
+    assert text(received) == "0:a 100:b@240 200:c@240+1"
+
+
 def test_labels_must_be_known_and_new():
     """A generator is added once, after those that feed it."""
     kernel, _ = network(sources={"a": "0:a"})
