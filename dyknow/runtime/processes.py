@@ -106,6 +106,7 @@ class RunningUnit:
         self._unit = unit
         self._inputs: list[Sample[Any]] = [NO_SAMPLE] * n_inputs
         self._has_news = False
+        self._due: TimePoint | None = None
         self._generator = generator
         self._agenda = agenda
         self._meter = meter
@@ -137,7 +138,7 @@ class RunningUnit:
         if self._reporter is not None:
             for violation in self._reporter.take_violations():
                 self._publish(violation)
-        for time in (self._unit.due(), self._generator.next_release):
+        for time in (self._due, self._generator.next_release):
             if time is not None:
                 self._agenda.wake(self._ticket, time)
 
@@ -156,11 +157,11 @@ class RunningUnit:
             self._has_news = False
             self._generator.account.calls += 1
             produced.extend(self._unit.push(now, tuple(self._inputs)))
-        due = self._unit.due()
-        if due is not None and due <= now:
+        self._due = self._unit.due()
+        if self._due is not None and self._due <= now:
             self._generator.account.calls += 1
             produced.extend(self._unit.advance(now))
-            still_due = self._unit.due()
-            if still_due is not None and still_due <= now:
+            self._due = self._unit.due()
+            if self._due is not None and self._due <= now:
                 raise ValueError("after 'advance' the unit is still due at the same time")
         return produced

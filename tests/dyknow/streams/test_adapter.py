@@ -22,7 +22,7 @@ def test_a_policy_that_restricts_nothing_needs_no_adapter():
     assert adapter_for(Policy()) is None
 
 
-@settings(derandomize=True, deadline=None, max_examples=200)
+@settings(derandomize=True, deadline=None, max_examples=100)
 @given(streams(), policies())
 def test_what_comes_out_keeps_the_policy_or_the_violation_is_published(given_stream, policy):
     """Only the sample period can be broken, by gaps, and each gap is published."""
@@ -36,7 +36,7 @@ def test_what_comes_out_keeps_the_policy_or_the_violation_is_published(given_str
         assert any(p.valid_time == last + policy.period for p in published)
 
 
-@settings(derandomize=True, deadline=None, max_examples=200)
+@settings(derandomize=True, deadline=None, max_examples=100)
 @given(streams(), policies())
 def test_what_comes_out_is_a_substream_of_what_goes_in(given_stream, policy):
     """An adapter that does not approximate delays and leaves out; it makes up nothing."""
@@ -46,7 +46,7 @@ def test_what_comes_out_is_a_substream_of_what_goes_in(given_stream, policy):
     assert is_substream(made, given_stream)
 
 
-@settings(derandomize=True, deadline=None, max_examples=150)
+@settings(derandomize=True, deadline=None, max_examples=80)
 @given(streams(size=6), policies().filter(lambda policy: policy.period is None))
 def test_no_sample_could_be_added_to_what_comes_out(given_stream, policy):
     """By brute force over all selections: none that keeps the policy contains the one made."""
@@ -58,7 +58,7 @@ def test_no_sample_could_be_added_to_what_comes_out(given_stream, policy):
             assert not (contains and keeps(selection, policy))
 
 
-@settings(derandomize=True, deadline=None, max_examples=150)
+@settings(derandomize=True, deadline=None, max_examples=80)
 @given(streams(), policies())
 def test_a_sample_the_policy_wants_is_handed_on_or_reported(given_stream, policy):
     """Of a stream that is not sampled, nothing within the duration is lost unseen."""
@@ -75,7 +75,7 @@ def test_a_sample_the_policy_wants_is_handed_on_or_reported(given_stream, policy
     )
 
 
-@settings(derandomize=True, deadline=None, max_examples=200)
+@settings(derandomize=True, deadline=None, max_examples=100)
 @given(streams(), approximating_policies())
 def test_with_approximation_the_values_are_those_of_the_definition(given_stream, policy):
     """The grid is filled as definition 4.5.10 says, at the latest when the delay has passed."""

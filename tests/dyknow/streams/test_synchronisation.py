@@ -72,7 +72,7 @@ def _monotone(steps):
     return samples
 
 
-@settings(derandomize=True, deadline=None, max_examples=200)
+@settings(derandomize=True, deadline=None, max_examples=100)
 @given(MONOTONE, MONOTONE, MONOTONE)
 def test_states_are_the_common_valid_times_whatever_the_delays(one, two, three):
     """Values and valid times of the states do not depend on when samples arrive."""
