@@ -54,17 +54,16 @@ class _Wording:
         return negation(formula) if literal & 1 else formula
 
     def _anchor(self, node: UntilNode, anchor: Anchor) -> Formula:
-        left, right = self._graph.formula(node.left), self._graph.formula(node.right)
-        if node.left != TRUTH:
-            return disjunction(
-                [
-                    syntax.Until(_interval(*piece), left, right)
-                    for piece in pieces(anchor.witnesses)
-                ]
-            )
-        return disjunction(
-            [f for p in pieces(anchor.witnesses) for f in self._eventually(node, right, *p)]
-        )
+        right = self._graph.formula(node.right)
+        options = pieces(anchor.witnesses)
+        if node.left == TRUTH:
+            return disjunction([f for p in options for f in self._eventually(node, right, *p)])
+        left = self._graph.formula(node.left)
+        until = [syntax.Until(_interval(*piece), left, right) for piece in options]
+        if anchor.left_from >= 1 or anchor.witnesses[0] < 1:
+            return disjunction([*until])
+        so_far = syntax.Always(_interval(anchor.left_from, 1), left)
+        return conjunction([so_far, disjunction([*until])])
 
     def _eventually(self, node: UntilNode, right: Formula, start: int, end: int) -> list[Formula]:
         """Return what it takes for the right side to hold from *start* up to before *end*."""

@@ -33,11 +33,6 @@ def progressed(table, trace):
     return verdicts
 
 
-def is_constant(formula):
-    """Whether simplification alone decides some part of the formula."""
-    return "true" in text_from_formula(formula) or "false" in text_from_formula(formula)
-
-
 def agrees(formula, trace):
     """Verdicts never contradict the meaning and come no later."""
     found = progressed(ProgressionTable(formula), trace)
@@ -241,6 +236,11 @@ def after(text, *states):
             "always [-200, oo] eventually [0, 900] always [0, 500] p",
         ),
         ("p until [100, 400] q", [(0, True), (50, True)], "p until [50, 350] q"),
+        (
+            "(eventually [0, 300] q) until [500, 900] p",
+            [(0, True), (200, True)],
+            "always [-200, 0] eventually [0, 300] q and eventually [0, 300] q until [300, 700] p",
+        ),
         ("p and q", [(0, True)], "false"),
         ("always p -> eventually q", [(0, True)], "eventually not p or eventually q"),
     ],
