@@ -124,11 +124,13 @@ class TemporalNetwork:
         np.fill_diagonal(limits, 0)
         for bound in self._bounds:
             at = self._index[bound.earlier], self._index[bound.later]
-            limits[at] = min(limits[at], bound.limit)
+            limits[at] = min(int(limits[at]), bound.limit)
         for middle in range(n):
             through = limits[:, middle, None] + limits[None, middle, :]
             is_limit = (limits[:, middle, None] < UNBOUNDED) & (limits[middle] < UNBOUNDED)
             limits = np.where(is_limit, np.minimum(limits, through), limits)
+            # Contradictory bounds would go on tightening each other beyond all numbers.
+            np.maximum(limits, -UNBOUNDED, out=limits)
         return limits
 
 

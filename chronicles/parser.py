@@ -1,6 +1,6 @@
 """From the text of a chronicle file to its syntax tree."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Collection, Sequence
 from functools import cache
 from pathlib import Path
 from typing import Any
@@ -13,7 +13,7 @@ from lark.tree import Meta
 from chronicles import syntax
 from chronicles.errors import ChronicleSyntaxError
 from chronicles.syntax import ChronicleFile
-from dyknow.source_text import SourceText, Span
+from dyknow.source_text import SourceText, Span, nearest_name
 from dyknow.time import MILLISECOND, Duration, duration_from_text
 
 __all__ = ["RESERVED_WORDS", "parse_chronicles", "read_chronicles"]
@@ -32,8 +32,8 @@ _TERMINALS = rf"""
 NAME: /(?!(?:{"|".join(sorted(RESERVED_WORDS))})\b)[A-Za-z_]\w*/
 VARIABLE: /\?[A-Za-z_]\w*/
 STAR: /\*[A-Za-z_]\w*/
-DURATION: /\d+(?:\.\d+)?(?:[ \t]*(?:ns|us|ms|min|s|h)\b)?/
-INTEGER: /\d+/
+DURATION: /\d{{1,18}}(?:\.\d{{1,9}})?(?![\d.])(?:[ \t]*(?:ns|us|ms|min|s|h)\b)?/
+INTEGER: /\d{{1,18}}(?!\d)/
 STRING: /"[^"\n]*"/
 ORDER: "<=" | ">=" | "<" | ">" | "="
 EQUALITY: "==" | "!="
@@ -61,7 +61,9 @@ _EXPECTED = {
     "RIGHT": "'[' or ']'",
     "$END": "the end of the text",
 }
-_MOST_ALTERNATIVES = 5
+_ANY_VALUE = {"NAME", "INTEGER", "STRING"}
+_MOST_ALTERNATIVES = 6
+_LONGEST = 1 << 58
 
 
 def read_chronicles(path: Path) -> ChronicleFile:
@@ -156,6 +158,9 @@ class _Pieces(Transformer[Token, Any]):
         if duration is None or duration % MILLISECOND:
             message = f"'{token}' is finer than a millisecond, the instant of chronicles"
             raise ChronicleSyntaxError(message, _span_of_token(self._source, token))
+        if duration > _LONGEST:
+            message = f"'{token}' is longer than nine years"
+            raise ChronicleSyntaxError(message, _span_of_token(self._source, token))
         return duration
 
 
@@ -216,38 +221,51 @@ def _span_of_token(source: SourceText, token: Token) -> Span:
 
 
 def _syntax_error(source: SourceText, error: UnexpectedInput) -> ChronicleSyntaxError:
-    expected = getattr(error, "accepts", None) or getattr(error, "expected", None)
     if isinstance(error, UnexpectedCharacters):
-        expected = error.allowed
         assert error.pos_in_stream is not None
-        span, found = _unknown_word(source, error.pos_in_stream)
+        span = _word_at(source, error.pos_in_stream)
+        accepted: Collection[str] | None = error.allowed
     else:
         token = error.token  # type: ignore[attr-defined]  # UnexpectedToken or UnexpectedEOF
-        is_end = isinstance(error, UnexpectedEOF) or token.type == "$END"
         at_end = Span(source, len(source.text.rstrip()), len(source.text.rstrip()))
+        is_end = isinstance(error, UnexpectedEOF) or token.type == "$END"
         span = at_end if is_end else _span_of_token(source, token)
-        found = "the end of the text" if is_end else f"'{token}'"
-    return ChronicleSyntaxError(f"expected {_alternatives(expected)}, found {found}", span)
+        accepted = getattr(error, "accepts", None) or getattr(error, "expected", None)
+    expected = _alternatives(accepted or ())
+    found = source.text[span.start : span.end]
+    message = f"expected {_listed(expected)}, found {_described(found)}"
+    nearest = nearest_name(found, (word.strip("'") for word in expected))
+    hint = f"; did you mean '{nearest}'?" if nearest and nearest != found else ""
+    return ChronicleSyntaxError(message + hint, span)
 
 
-def _unknown_word(source: SourceText, start: int) -> tuple[Span, str]:
+def _word_at(source: SourceText, start: int) -> Span:
     end = start + 1
-    while end < len(source.text) and source.text[start:end].isidentifier():
-        if not source.text[start : end + 1].isidentifier():
-            break
+    while source.text[start : end + 1].isidentifier() and end < len(source.text):
         end += 1
-    word = source.text[start:end]
-    found = f"the reserved word '{word}'" if word in RESERVED_WORDS else f"'{word}'"
-    return Span(source, start, end), found
+    return Span(source, start, end)
 
 
-def _alternatives(terminals: Any) -> str:
-    known = {t.name: t for t in _grammar().terminals}
+def _described(found: str) -> str:
+    if not found:
+        return "the end of the text"
+    return f"the reserved word '{found}'" if found in RESERVED_WORDS else f"'{found}'"
+
+
+def _alternatives(terminals: Collection[str]) -> list[str]:
+    """Return how to say what could have come, in order."""
+    pattern_by_name = {terminal.name: terminal.pattern.value for terminal in _grammar().terminals}
+    rest = set(terminals)
     words = set()
-    for name in terminals or ():
-        pattern = known[name].pattern.value if name in known else name
-        words.add(_EXPECTED.get(name, f"'{pattern}'"))
+    if rest >= _ANY_VALUE:
+        rest -= _ANY_VALUE
+        words.add("a value")
+    words |= {_EXPECTED.get(name) or f"'{pattern_by_name.get(name, name)}'" for name in rest}
+    return sorted(words)
+
+
+def _listed(words: list[str]) -> str:
     if not words or len(words) > _MOST_ALTERNATIVES:
         return "a statement" if "'noevent'" in words else "something else"
-    *others, last = sorted(words)
+    *others, last = words
     return f"{', '.join(others)} or {last}" if others else last

@@ -22,7 +22,8 @@ _Recognitions = tuple[Recognition, ...]
 class ChronicleRecogniser:
     """Recognises chronicles in streams of events (Heintz 2009, section 8.7.3).
 
-    The value of each input sample is a tuple of the events at its valid time. Streams need not
+    The value of each input sample is a tuple of the events at its valid time; an empty one says
+    that nothing happened up to then. Streams need not
     agree in their delay: with *max_delay* each sample waits until that time after it was valid,
     so that all streams are taken in the order of valid time. Before the events of a sample are
     taken in, the clock of the recogniser moves to its valid time, which ends what could only
@@ -63,7 +64,7 @@ class ChronicleRecogniser:
     ) -> Iterable[Sample[_Recognitions]]:
         """Take in the new samples among *inputs* and emit what is recognised."""
         for sample in inputs:
-            if sample.available_time == now and sample.value:
+            if sample.available_time == now and isinstance(sample.value, tuple):
                 self._n_samples += 1
                 heappush(self._waiting, (sample.valid_time, self._n_samples, sample.value))
         return self.advance(now)

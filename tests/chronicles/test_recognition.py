@@ -256,7 +256,7 @@ def run(recogniser: Recogniser, events: list[Event], end: int) -> list[Recogniti
     return found + recogniser.advance(TimePoint(end))
 
 
-@settings(derandomize=True, deadline=None, max_examples=600)
+@settings(derandomize=True, deadline=None, max_examples=250)
 @given(chronicle_texts(), streams(), st.integers(0, 8), st.data())
 def test_recogniser_agrees_with_the_meaning(
     text: str, events: list[Event], wait: int, data: st.DataObject
