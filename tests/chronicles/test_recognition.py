@@ -278,3 +278,188 @@ def test_recogniser_agrees_with_the_meaning(
     found += recogniser.advance(TimePoint(end))
 
     assert sorted(map(flat, found)) == enumerate_recognitions(file.chronicles[0], events, end)
+
+
+# The promises one by one.
+
+
+def recogniser_of(text: str) -> Recogniser:
+    """Return a recogniser of the chronicles in a text."""
+    return Recogniser(models_from_chronicles(parse_chronicles(text)))
+
+
+def message(name: str, time: int, *arguments: str) -> Event:
+    """Return a message at a time in milliseconds."""
+    return Event(name, arguments, None, None, TimePoint(time * MS))
+
+
+def told(recogniser: Recogniser, *events: Event) -> list[tuple[int, ...]]:
+    """Push events and return the times of what is recognised, in milliseconds."""
+    found = []
+    for event in events:
+        found += recogniser.push(event.time, [event])
+    return [tuple(time // MS for time in one.instants.values()) for one in found]
+
+
+def test_noevent_is_recognised_when_its_interval_ends_without_another_event():
+    """A clock update alone recognises, and the time of recognition is the end of the interval."""
+    recogniser = recogniser_of("chronicle c { event(a, t1) noevent(b, (t1 + 1, t1 + 100)) }")
+
+    assert told(recogniser, message("a", 5)) == []
+    assert recogniser.next_deadline() == 105 * MS
+    assert recogniser.advance(TimePoint(104 * MS)) == []
+    (found,) = recogniser.advance(TimePoint(500 * MS))
+    assert (found.end, found.recognised_at) == (5 * MS, 105 * MS)
+
+
+def test_an_interval_ends_before_its_second_instant():
+    """A forbidden event at the very end of its interval does not matter; one before it does."""
+    text = "chronicle c { event(a, t1) event(d, t2) noevent(b, (t1, t2)) t1 <= t2 }"
+
+    assert told(recogniser_of(text), *(message(n, t) for n, t in [("a", 1), ("b", 3), ("d", 3)]))
+    assert not told(
+        recogniser_of(text), *(message(n, t) for n, t in [("a", 1), ("b", 2), ("d", 3)])
+    )
+    assert not told(
+        recogniser_of(text), *(message(n, t) for n, t in [("b", 1), ("a", 1), ("d", 3)])
+    )
+
+
+def test_enough_events_are_settled_with_the_last_of_them():
+    """`occurs(n, oo)` waits for the n-th event and not for the end of its interval."""
+    recogniser = recogniser_of("chronicle c { event(a, t1) occurs(2, oo, b, (t1, t1 + 100)) }")
+
+    assert told(recogniser, message("a", 0), message("b", 10)) == []
+    assert told(recogniser, message("b", 10)) == []
+    assert told(recogniser, message("b", 20)) == [(0,)]
+
+
+def test_equal_events_of_one_instant_are_one():
+    """An event that is told twice counts once and makes one match."""
+    recogniser = recogniser_of("chronicle c { event(a, t1) occurs(1, 1, a, (t1, t1 + 1)) }")
+
+    assert told(recogniser, message("a", 0), message("a", 0)) == []
+    assert len(recogniser.advance(TimePoint(MS))) == 1
+
+
+def test_finer_times_are_rounded_down_to_instants():
+    """Events within one millisecond are at one instant; the event keeps its own time."""
+    recogniser = recogniser_of("chronicle c { event(a, t1) event(b, t2) t1 = t2 }")
+
+    recogniser.push(TimePoint(7 * MS + 900_000), [message("a", 7)])
+    late = Event("b", (), None, None, TimePoint(7 * MS + 100_000))
+    (found,) = recogniser.push(late.time, [late])
+
+    assert found.instants == {"t1": 7 * MS, "t2": 7 * MS}
+    assert found.events[1].time == 7 * MS + 100_000
+
+
+def test_late_events_are_counted_and_left_out():
+    """An event before the clock changes nothing but the count."""
+    recogniser = recogniser_of("chronicle c { event(a, t1) }")
+
+    recogniser.advance(TimePoint(10 * MS))
+
+    assert told(recogniser, message("a", 9), message("a", 10)) == [(10,)]
+    assert recogniser.n_late == 1
+
+
+def test_a_variable_does_not_take_an_unknown_value():
+    """`?` matches a change from unknown; `?x` does not."""
+    text = "chronicle c[?x] {{ event(p[?x]:({}, v), t1) }}"
+    first = Event("p", ("x",), None, "v", TimePoint(0))
+
+    assert told(recogniser_of(text.format("?")), first) == [(0,)]
+    assert told(recogniser_of(text.format("?x")), first) == []
+
+
+def test_partial_instances_are_listed_with_what_they_wait_for():
+    """The worked example of the thesis (section 8.4): A, B, and C at most 5 later than B."""
+    recogniser = recogniser_of(
+        "chronicle c { event(A, a) event(B, b) event(C, c) c - b in [0, 5] }"
+    )
+
+    def listed() -> list[dict[str, int]]:
+        return [
+            {name: time // MS for name, time in one.instants.items()}
+            for one in recogniser.partial_instances()
+        ]
+
+    told(recogniser, message("A", 4), message("B", 5), message("B", 8))
+    assert sorted(map(str, listed())) == sorted(
+        map(str, [{"a": 4}, {"b": 5}, {"b": 8}, {"a": 4, "b": 5}, {"a": 4, "b": 8}])
+    )
+
+    recogniser.advance(TimePoint(11 * MS))
+    assert sorted(map(str, listed())) == sorted(map(str, [{"a": 4}, {"b": 8}, {"a": 4, "b": 8}]))
+
+    assert told(recogniser, message("C", 12)) == [(4, 8, 12)]
+
+
+def test_what_is_awaited_carries_values_and_limits():
+    """A partial instance tells the events to come with the values and times known so far."""
+    recogniser = recogniser_of(
+        "chronicle c[?x] { event(a[?x], t1) event(b[?x]:(?, v), t2) t2 - t1 in [10, 100]"
+        " noevent(d[?x], (t1 + 1, t2 + 50)) }"
+    )
+
+    told(recogniser, message("a", 5, "x7"))
+    (partial,) = recogniser.partial_instances()
+    (awaited,) = partial.awaited
+    assert (partial.values, awaited.predicate) == ({"x": "x7"}, "event(b[x7]:(?, v), t2)")
+    assert (awaited.earliest, awaited.latest) == (15 * MS, 105 * MS)
+
+    told(recogniser, Event("b", ("x7",), None, "v", TimePoint(20 * MS)))
+    waiting = [one for one in recogniser.partial_instances() if len(one.instants) == 2]
+    (awaited,) = waiting[0].awaited
+    assert awaited.predicate == "noevent(d[x7], (t1 + 1, t2 + 50))"
+    assert (awaited.earliest, awaited.latest) == (6 * MS, 70 * MS)
+
+
+def test_events_without_a_common_variable_do_not_multiply():
+    """Only what a later event joins is put together."""
+    recogniser = recogniser_of(
+        "chronicle c[?x, ?y] { event(a[?x], t1) event(a[?y], t2) event(b[?x, ?y], t3)"
+        " t1 <= t3 t2 <= t3 t3 - t1 <= 1000 t3 - t2 <= 1000 }"
+    )
+
+    told(recogniser, *(message("a", i, f"v{i}") for i in range(50)))
+    assert len(recogniser.partial_instances()) == 100
+
+    assert told(recogniser, message("b", 60, "v3", "v9")) == [(3, 9, 60)]
+
+
+@settings(derandomize=True, deadline=None, max_examples=30)
+@given(st.lists(st.tuples(st.integers(1, 9), st.sampled_from("abd")), max_size=60))
+def test_nothing_is_kept_longer_than_the_bounds_of_a_chronicle(
+    steps: list[tuple[int, str]],
+) -> None:
+    """When all deadlines have passed no instance, deadline or index entry is left."""
+    recogniser = recogniser_of(
+        "chronicle c[?x] { event(a[?x], t1) event(b[?x], t2) noevent(d[?x], (t1 + 1, t2))"
+        " t1 < t2 <= t1 + 20 }"
+    )
+    time = 0
+    for step, name in steps:
+        time += step
+        told(recogniser, message(name, time, f"v{step % 3}"))
+
+    recogniser.advance(TimePoint((time + 100) * MS))
+
+    assert recogniser.size() == 0
+
+
+def test_memory_stays_flat_over_a_long_stream():
+    """Instances, counted events and reports are forgotten as the stream goes on."""
+    recogniser = recogniser_of(
+        "chronicle c[?x] { report non_overlapping (t1, t2)"
+        " event(a[?x], t1) event(b[?x], t2) occurs(0, 1, a[?x], (t1 - 5, t2))"
+        " t1 < t2 <= t1 + 20 }"
+    )
+    n_found = 0
+    for time in range(20_000):
+        n_found += len(told(recogniser, message("ab"[time % 2], time, f"v{time // 2}")))
+    sizes = recogniser.size()
+
+    assert n_found == 10_000
+    assert sizes < 10_000
