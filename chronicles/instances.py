@@ -33,10 +33,9 @@ class Instance:
         events: For each slot its event.
         latest: For each slot the latest time at which it can be filled.
         due: When the agenda looks at it; None if it never needs to.
-        alive: Whether it can still become complete.
     """
 
-    __slots__ = ("alive", "due", "events", "latest", "stage", "times", "values")
+    __slots__ = ("due", "events", "latest", "stage", "times", "values")
 
     def __init__(
         self,
@@ -52,7 +51,6 @@ class Instance:
         self.events = events
         self.latest = latest
         self.due: int | None = None
-        self.alive = True
 
 
 Bucket = dict[Instance, None]
@@ -142,7 +140,6 @@ class Stage:
 
     def remove(self, instance: Instance) -> None:
         """Forget *instance* and every entry about it."""
-        instance.alive = False
         del self.members[instance]
         for index, key in self._entries:
             _drop(index, key(instance.values), instance)
@@ -189,6 +186,10 @@ class Agenda:
             heappop(heap)
             self._n_stale -= 1
         return heap[0][0] if heap else None
+
+    def is_due(self, clock: int) -> bool:
+        """Return whether `until` has anything to look at."""
+        return bool(self._heap) and self._heap[0][0] <= clock
 
     def until(self, clock: int) -> Iterator[tuple[int, Instance]]:
         """Yield the instances that are due up to *clock*, in order, and when they were."""

@@ -13,7 +13,7 @@ from chronicles.constraints import INSTANT, UNBOUNDED
 from chronicles.counting import CountedEvents
 from chronicles.events import Event
 from chronicles.instances import Agenda, Instance, Stage, Watch
-from chronicles.joining import Joiner
+from chronicles.joining import Joiner, Recipe
 from chronicles.models import Counter, Model, Slot
 from chronicles.patterns import Values, key_of
 
@@ -42,7 +42,6 @@ class Matcher:
         self._on_match = on_match
         self._watches: dict[Counter, list[Watch]] = {c: [] for c in model.counters}
         self._counted = {c: CountedEvents(c) for c in model.counters if c.looks_back}
-        self._seen_now: list[set[Values]] = []
         self._sweep_at = _LEAST_TO_SWEEP
         self._joiner = Joiner(model, self._new_stage, self._admit)
 
@@ -63,11 +62,6 @@ class Matcher:
             yield from stage.members
 
     @property
-    def notes_instants(self) -> bool:
-        """Whether `begin_instant` does anything."""
-        return any(slot.pattern.loose for slot in self.model.slots)
-
-    @property
     def keeps_counts(self) -> bool:
         """Whether `sweep` does anything."""
         return bool(self._counted)
@@ -75,11 +69,6 @@ class Matcher:
     def n_counted(self) -> int:
         """Return how many counted events are kept."""
         return sum(counted.n_times for counted in self._counted.values())
-
-    def begin_instant(self) -> None:
-        """Forget which events the instant before held."""
-        for seen in self._seen_now:
-            seen.clear()
 
     def earliest_begin(self, slot: int, clock: int, offset: int = 0) -> int:
         """Return before which time no instance, present or future, has *offset* from *slot*."""
@@ -101,30 +90,9 @@ class Matcher:
     # Events that fill slots.
 
     def _filling(self, slot: Slot) -> Handler:
-        match = slot.pattern.match
         recipes = self._joiner.recipes[slot.index]
-        if not slot.pattern.loose:
-
-            def fill(event: Event, now: int) -> None:
-                values = match(event)
-                if values is not None:
-                    for recipe in recipes:
-                        recipe(event, now, values)
-
-            return fill
-
-        # Several events of one instant can mean the same to this slot; the first stands for all.
-        seen: set[Values] = set()
-        self._seen_now.append(seen)
-
-        def fill_once(event: Event, now: int) -> None:
-            values = match(event)
-            if values is not None and values not in seen:
-                seen.add(values)
-                for recipe in recipes:
-                    recipe(event, now, values)
-
-        return fill_once
+        match = slot.pattern.match
+        return _fill_once(match, recipes) if slot.pattern.loose else _fill(match, recipes)
 
     def _new_stage(self, mask: int) -> Stage:
         stage = Stage(self.model, mask, self._review)
@@ -305,3 +273,34 @@ class Matcher:
         if end > clock:
             return (None, end)
         return (end, end) if n >= counter.least else never
+
+
+def _fill(match: Callable[[Event], Values | None], recipes: list[Recipe]) -> Handler:
+    def fill(event: Event, now: int) -> None:
+        values = match(event)
+        if values is not None:
+            for recipe in recipes:
+                recipe(event, now, values)
+
+    return fill
+
+
+def _fill_once(match: Callable[[Event], Values | None], recipes: list[Recipe]) -> Handler:
+    """Return a handler to which all events of one instant with the same values are one."""
+    seen: set[Values] = set()
+    seen_at: int | None = None
+
+    def fill(event: Event, now: int) -> None:
+        nonlocal seen_at
+        values = match(event)
+        if values is None:
+            return
+        if now != seen_at:
+            seen.clear()
+            seen_at = now
+        if values not in seen:
+            seen.add(values)
+            for recipe in recipes:
+                recipe(event, now, values)
+
+    return fill

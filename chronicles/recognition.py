@@ -65,7 +65,6 @@ class Recogniser:
         self._seen: set[tuple[str, Values, str | None, str | None]] = set()
         self._matchers = [Matcher(model, self._agenda, self._note) for model in models]
         self._place = {matcher: i for i, matcher in enumerate(self._matchers)}
-        self._with_instant = [m for m in self._matchers if m.notes_instants]
         self._with_counts = [m for m in self._matchers if m.keeps_counts]
         self._reports = {
             matcher: NonOverlapping(matcher, matcher.model.counted_interval)
@@ -112,7 +111,7 @@ class Recogniser:
             seen.add(fact)
             for handle in route.by_value.get(value, route.other):  # type: ignore[arg-type]
                 handle(event, now)
-        return self._take_found()
+        return self._take_found() if self._found else []
 
     def advance(self, time: TimePoint) -> list[Recognition]:
         """Note that everything before *time* is known and return what is recognised by then.
@@ -149,18 +148,15 @@ class Recogniser:
         self._found.append((recognised_at, self._place[matcher], matcher, instance))
 
     def _move_clock(self, now: int) -> None:
-        for due, instance in self._agenda.until(now):
-            instance.stage.review(instance, due)
+        if self._agenda.is_due(now):
+            for due, instance in self._agenda.until(now):
+                instance.stage.review(instance, due)
         self._clock = now
         self._seen.clear()
-        for matcher in self._with_instant:
-            matcher.begin_instant()
         for matcher in self._with_counts:
             matcher.sweep(now)
 
     def _take_found(self) -> list[Recognition]:
-        if not self._found:
-            return []
         found = sorted(self._found, key=_order)
         self._found.clear()
         return [
