@@ -18,7 +18,7 @@ import numpy.typing as npt
 from anchoring.motion import ACROSS_A_ROAD, ALONG_A_ROAD, AxisState, Floats
 from networks.roads import RoadMap
 
-__all__ = ["BRANCH", "BranchSettings", "Branches", "RoadFollower"]
+__all__ = ["BRANCH", "BranchSettings", "Branches", "RoadFollower", "grown_unseen"]
 
 _ALONG = len(ALONG_A_ROAD.kinds)
 _ACROSS = len(ACROSS_A_ROAD.kinds)
@@ -43,8 +43,14 @@ _MOST_ROADS_AT_ONCE = 16
 _PATIENCE = 1.0
 """Seconds without measurement after which a vehicle may have done anything."""
 
-_GAP_DENSITY = 1.5
-"""Spectral density of the acceleration, m²/s³, over a gap longer than that."""
+_REVERSING = 1.5
+"""How fast, in m/s, vehicles usually go backwards at most."""
+
+_GAP_DENSITY = 2.0
+"""Spectral density of the acceleration, m²/s³, of a vehicle that nobody sees."""
+
+_GAP_DRIFT = 0.25
+"""How fast the variance of its place across the road grows, m²/s."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -243,10 +249,11 @@ class RoadFollower:
         return table
 
     def _strangeness(self, branches: Branches) -> Floats:
-        """Return how unusual it is, in nats, to be so far from the middle of the road."""
+        """Return how unusual it is, in nats, to be so far from the middle, or to go backwards."""
         across = branches.across.expected()
         usual = self._half_widths[branches.state["road"]] + 1.5
-        strangeness: Floats = 0.5 * (across[:, 0] / usual) ** 2
+        backwards = np.minimum(branches.along.expected()[:, 1], 0.0)
+        strangeness: Floats = 0.5 * ((across[:, 0] / usual) ** 2 + (backwards / _REVERSING) ** 2)
         return strangeness
 
     def _split(self, branches: Branches, elapsed: Floats) -> tuple[Branches, Floats]:
@@ -286,18 +293,30 @@ class RoadFollower:
         s, d = self.position(gap, elapsed[late])
         mean, covariance = gap.along.estimate()
         t = elapsed[late]
-        grown = np.stack(
-            (
-                covariance[:, 0] + covariance[:, 2] * t**2 + _GAP_DENSITY * t**3 / 3,
-                covariance[:, 2] * t + _GAP_DENSITY * t**2 / 2,
-                covariance[:, 2] + _GAP_DENSITY * t,
-            ),
-            axis=1,
-        )
-        sideways = np.broadcast_to((1.0, 0.0, 0.1), (len(late), 3))
+        _, sideways = gap.across.estimate()
+        grown, sideways = grown_unseen(covariance, sideways, t)
         again = ALONG_A_ROAD.start(np.stack((s, np.maximum(mean[:, 1], 0)), axis=1), grown)
         beside = ACROSS_A_ROAD.start(np.stack((d, np.zeros_like(d)), axis=1), sideways)
         return _replaced(along, late, again), _replaced(across, late, beside)
+
+
+def grown_unseen(along: Floats, across: Floats, elapsed: Floats) -> tuple[Floats, Floats]:
+    """Return covariances along and across roads after *elapsed* seconds without measurements.
+
+    Args:
+        along: shape (n, 3), of position and velocity.
+        across: shape (n, 3).
+        elapsed: shape (n,), seconds.
+    """
+    pp, pv, vv = along.T
+    t = elapsed
+    grown = (
+        pp + 2 * pv * t + vv * t**2 + _GAP_DENSITY * t**3 / 3,
+        pv + vv * t + _GAP_DENSITY * t**2 / 2,
+        vv + _GAP_DENSITY * t,
+    )
+    sideways = (across[:, 0] + _GAP_DRIFT * t, np.zeros_like(t), np.full_like(t, 0.1))
+    return np.stack(grown, axis=1), np.stack(sideways, axis=1)
 
 
 def _turns(heading: Floats) -> Floats:

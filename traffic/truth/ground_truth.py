@@ -43,7 +43,6 @@ class GroundTruth:
         self._overtake_watcher = OvertakeWatcher()
         self._visibility = Visibility()
         self._margin = margin
-        self._start: TimePoint | None = None
         self._judged: list[Manoeuvre] = []
         self._pending: list[Manoeuvre] = []
 
@@ -76,12 +75,11 @@ class GroundTruth:
 
     def _judge(self, now: TimePoint) -> None:
         """Decide which manoeuvres were in view, as soon as their margin is over."""
-        self._start = now if self._start is None else self._start
         due = [found for found in self._pending if found.end + self._margin <= now]
         self._pending = [found for found in self._pending if found.end + self._margin > now]
         self._judged += [replace(found, in_view=self._was_in_view(found)) for found in due]
 
     def _was_in_view(self, found: Manoeuvre) -> bool:
-        needed = max(found.begin - self._margin, self._start or 0)
+        needed = found.begin - self._margin
         since = [self._visibility.since(vehicle) for vehicle in found.vehicles]
         return all(began is not None and began <= needed for began in since)
