@@ -78,15 +78,8 @@ class Candidates:
         rows = rows[0][true], rows[1][true]
         if not len(rows[0]):
             return rows
-        return best_pairs(*rows, self._distance(lower.table, upper.table, rows), self._gate)
-
-    @property
-    def _gate(self) -> float:
-        return self._condition.reach
-
-    def _distance(self, lower: Table, upper: Table, rows: tuple[Rows, Rows]) -> Floats:
-        pairs = lower.select(rows[0]), upper.select(rows[1])
-        return self._condition.distance(*pairs)
+        chosen = lower.table.select(rows[0]), upper.table.select(rows[1])
+        return best_pairs(*rows, *self._condition.separation(*chosen))
 
     def _keep(self, lower: Unlinked, upper: Unlinked) -> None:
         """Drop the pairs of which an object is gone, or was linked in the meantime."""
@@ -168,20 +161,20 @@ class Candidates:
         )
 
 
-def best_pairs(at: Rows, on: Rows, distance: Floats, gate: float) -> tuple[Rows, Rows]:
+def best_pairs(at: Rows, on: Rows, separation: Floats, gate: float) -> tuple[Rows, Rows]:
     """Return which of the pairs (at[i], on[i]) to take, so that no number occurs twice.
 
-    The sum of squared distances is least, where each left-out member of *at* counts as one pair
-    at distance *gate*, or farther if some pair is. The nearest pairs win, and a row of vehicles
+    The sum of squared separations is least, where each left-out member of *at* counts as one pair
+    separated by *gate*, or by more if some pair is. The nearest pairs win, and a row of vehicles
     that all have moved on by the same amount is not shifted by one.
     """
     first, row = np.unique(at, return_inverse=True)
     second, column = np.unique(on, return_inverse=True)
-    limit = max(gate, 1.01 * float(distance.max()) + 0.01)
+    limit = max(gate, 1.01 * float(separation.max()) + 0.01)
     forbidden = 4 * limit**2 + 1
     cost = np.full((len(first), len(second) + len(first)), forbidden)
     cost[:, len(second) :] = limit**2
-    cost[row, column] = distance**2
+    cost[row, column] = separation**2
     chosen_row, chosen_column = linear_sum_assignment(cost)
     paired = chosen_column < len(second)
     return first[chosen_row[paired]], second[chosen_column[paired]]

@@ -9,7 +9,7 @@ from itertools import product
 
 import numpy as np
 
-from anchoring.links import DISTANCE, LinkUnit
+from anchoring.links import DEVIATION, DISTANCE, LinkUnit
 from anchoring.motion import Floats
 from dyknow.errors import UnknownNameError
 from dyknow.mtl.columns import AtomColumns, evaluate_atoms
@@ -23,6 +23,9 @@ __all__ = ["Condition"]
 
 _ROUNDING = 1e-6
 """Metres by which two ways of computing a distance may differ."""
+
+_USUAL_DEVIATION = 3.0
+"""Standard deviations within which most objects are found again."""
 
 
 class Condition:
@@ -84,10 +87,16 @@ class Condition:
             truth[self.free_atoms, :] = np.array(values, dtype=np.bool_)[:, None]
             yield truth
 
-    def distance(self, lower: Table, upper: Table) -> Floats:
-        """Return the distance of each pair, or 0 if the unit knows no distance."""
-        found = self._unit.feature(DISTANCE, ("from", "to"), lower, upper)
-        return np.zeros(len(lower)) if found is None else found
+    def separation(self, lower: Table, upper: Table) -> tuple[Floats, float]:
+        """Return how far apart each pair is, and from where on it is better to be left alone.
+
+        It is the deviation if the unit knows one, otherwise the distance, or else 0.
+        """
+        for name, gate in ((DEVIATION, _USUAL_DEVIATION), (DISTANCE, self.reach)):
+            found = self._unit.feature(name, ("from", "to"), lower, upper)
+            if found is not None:
+                return found, gate
+        return np.zeros(len(lower)), 0.0
 
     def _column(self, feature: Feature, lower: Table, upper: Table) -> Column:
         arguments = tuple(_argument(a) for a in feature.arguments)
@@ -97,7 +106,7 @@ class Condition:
             return upper[feature.name]
         column = self._unit.feature(feature.name, arguments, lower, upper)
         if column is None:
-            known = (*lower.columns, *upper.columns, DISTANCE)
+            known = (*lower.columns, *upper.columns, DISTANCE, DEVIATION)
             near = nearest_name(feature.name, known)
             raise UnknownNameError("feature", feature.name, feature.span, near)
         return column

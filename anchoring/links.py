@@ -14,10 +14,14 @@ from dyknow.mtl.syntax import Formula
 from dyknow.streams.table import Column, Ids, Table
 from dyknow.time import Duration, TimePoint
 
-__all__ = ["DISTANCE", "Link", "LinkSettings", "LinkUnit"]
+__all__ = ["DEVIATION", "DISTANCE", "Link", "LinkSettings", "LinkUnit"]
 
 DISTANCE = "xydist"
 """The feature that is the distance from a lower to an upper object in the plane, in metres."""
+
+DEVIATION = "deviation"
+"""The feature that tells how far two objects are apart for what is known about them: their
+Mahalanobis distance, in standard deviations. A unit may have none."""
 
 
 @dataclass(frozen=True, slots=True)

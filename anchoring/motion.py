@@ -24,7 +24,6 @@ __all__ = [
     "Floats",
     "Manoeuvre",
     "Manoeuvres",
-    "angle_between",
     "predict_in_plane",
     "update_in_plane",
 ]
@@ -96,20 +95,6 @@ def update_in_plane(
     return mean + (gain @ innovation)[:, :, 0], corrected, surprise
 
 
-def angle_between(velocity: Floats, heading: Floats, least_speed: float) -> Floats:
-    """Return the angles between velocities and headings; 0 where the velocity is too small.
-
-    Args:
-        velocity: shape (n, 2).
-        heading: shape (n,), radians.
-        least_speed: The speed from which a velocity has a direction.
-    """
-    along = velocity[:, 0] * np.cos(heading) + velocity[:, 1] * np.sin(heading)
-    speed = np.hypot(velocity[:, 0], velocity[:, 1])
-    cosine = np.clip(along / np.maximum(speed, 1e-9), -1.0, 1.0)
-    return np.where(speed >= least_speed, np.arccos(cosine), 0.0)
-
-
 def _blocks(covariance: Floats) -> tuple[Floats, Floats, Floats]:
     return covariance[:, :2, :2], covariance[:, :2, 2:], covariance[:, 2:, 2:]
 
@@ -120,7 +105,7 @@ class Manoeuvre:
 
     Attributes:
         density: Spectral density of the acceleration noise, m²/s³.
-        acceleration: Mean acceleration, m/s².
+        acceleration: Mean acceleration, m/s²; a negative one does not reverse the movement.
         damping: Rate at which the velocity returns to `drift`, 1/s; 0 for never.
         drift: The velocity that a damped movement tends to, m/s.
     """
@@ -183,11 +168,16 @@ class Manoeuvres:
         """Carry *state* forward by *elapsed* seconds, shape (n,)."""
         mixed = self._mix(state, elapsed)
         t = elapsed[:, None]
-        damping, acceleration, density = self._damping, self._acceleration, self._density
+        damping, density = self._damping, self._density
         kept = np.exp(-damping * t)
         reach = np.where(damping > 0, (1 - kept) / np.where(damping > 0, damping, 1), t)
         position, velocity = mixed.mean[..., 0], mixed.mean[..., 1]
         drift = self._drift
+        # Braking ends at a standstill.
+        stop = -np.maximum(velocity, 0.0) / np.maximum(t, 1e-9)
+        acceleration = np.where(
+            self._acceleration < 0, np.maximum(self._acceleration, stop), self._acceleration
+        )
         mean = np.stack(
             (
                 position + drift * t + reach * (velocity - drift) + acceleration * t**2 / 2,

@@ -8,8 +8,8 @@ a crossing (see `anchoring.branches`); its distance to a world object is that of
 import numpy as np
 import numpy.typing as npt
 
-from anchoring.branches import Branches, BranchSettings, RoadFollower
-from anchoring.motion import Floats, angle_between
+from anchoring.branches import Branches, BranchSettings, RoadFollower, grown_unseen
+from anchoring.motion import Floats
 from anchoring.rows import Rows, with_rows
 from dyknow.streams.table import Column, Ids, Table
 from dyknow.time import SECOND, TimePoint
@@ -100,8 +100,8 @@ class OnRoadObject:
 
         - `on_road(from)`: whether the world object is on a road;
         - `xydist(from, to)`: metres from the world object to the nearest branch;
-        - `turned(from, to)`: the angle, in radians from 0 to π, between the directions of travel
-          of both, on that branch; 0 if the world object is too slow to tell.
+        - `deviation(from, to)`: how far position and velocity are from those of the branch that
+          fits best, in standard deviations of both.
         """
         match name, arguments:
             case "on_road", ("from",):
@@ -110,11 +110,11 @@ class OnRoadObject:
                 on_road: Column = self._roads.distance_to_road(lower["position"]) <= margin
                 return on_road
             case "xydist", ("from", "to"):
-                return _nearest(lower, upper)[1]
-            case "turned", ("from", "to"):
-                branch, _ = _nearest(lower, upper)
-                heading = upper["headings"][np.arange(len(upper)), branch]
-                return angle_between(lower["velocity"], heading, self._steering_speed)
+                apart = upper["places"] - lower["position"][:, None, :]
+                distance: Column = np.nanmin(np.linalg.norm(apart, axis=2), axis=1)
+                return distance
+            case "deviation", ("from", "to"):
+                return _deviation(lower, upper)
             case _:
                 return None
 
@@ -214,6 +214,7 @@ class OnRoadObject:
         road, s, d = best.state["road"], s[first], d[first]
         along, along_variance = best.along.estimate()
         across, across_variance = best.across.estimate()
+        along_variance, across_variance = grown_unseen(along_variance, across_variance, elapsed)
         heading = headings[:, 0]
         ahead = np.stack((np.cos(heading), np.sin(heading)), axis=1)
         left = np.stack((-ahead[:, 1], ahead[:, 0]), axis=1)
@@ -227,8 +228,10 @@ class OnRoadObject:
             road=road.astype(np.int32),
             s=s,
             d=d,
-            s_variance=along_variance[:, 0] + along_variance[:, 2] * elapsed**2,
+            s_variance=along_variance[:, 0],
             d_variance=across_variance[:, 0],
+            speed_variance=along_variance[:, 2],
+            drift_variance=across_variance[:, 2],
             heading=heading + np.pi * backwards,
             world_position=world_position,
             observed=np.full(n, observed),
@@ -248,8 +251,25 @@ def _elapsed(upper: Table, now: TimePoint) -> Floats:
     return elapsed
 
 
-def _nearest(lower: Table, upper: Table) -> tuple[Rows, Floats]:
-    """Return the branch of *upper* that is nearest to *lower*, and its distance."""
-    apart = np.linalg.norm(upper["places"] - lower["position"][:, None, :], axis=2)
-    branch = np.nanargmin(apart, axis=1)
-    return branch, apart[np.arange(len(apart)), branch]
+def _deviation(lower: Table, upper: Table) -> Floats:
+    """Return the least Mahalanobis distance of each world object from a branch, along and across.
+
+    How the errors of position and velocity, and of along and across, depend on one another is
+    left out of account.
+    """
+    headings = upper["headings"]
+    ahead = np.stack((np.cos(headings), np.sin(headings)), axis=2)
+    left = np.stack((-ahead[:, :, 1], ahead[:, :, 0]), axis=2)
+    position = lower["position"][:, None, :] - upper["places"]
+    velocity = lower["velocity"][:, None, :] - upper["speed"][:, None, None] * ahead
+    squared = np.zeros(headings.shape)
+    for apart, at, variances in (
+        (position, slice(0, 2), ("s_variance", "d_variance")),
+        (velocity, slice(2, 4), ("speed_variance", "drift_variance")),
+    ):
+        spread = lower["covariance"][:, None, at, at]
+        for way, variance in zip((ahead, left), variances, strict=True):
+            known = (way[:, :, None, :] @ spread @ way[:, :, :, None])[:, :, 0, 0]
+            squared += (apart * way).sum(axis=2) ** 2 / (known + upper[variance][:, None])
+    deviation: Floats = np.sqrt(np.nanmin(squared, axis=1))
+    return deviation

@@ -6,7 +6,7 @@ Doherty 2009, 'A stream-based hierarchical anchoring framework', section V).
 
 import numpy as np
 
-from anchoring.links import DISTANCE
+from anchoring.links import DEVIATION, DISTANCE
 from anchoring.motion import Floats, predict_in_plane, update_in_plane
 from anchoring.rows import Mask, Rows, choose
 from dyknow.streams.table import Column, Ids, Table
@@ -102,11 +102,23 @@ class WorldObject:
     def feature(
         self, name: str, arguments: tuple[str, ...], lower: Table, upper: Table
     ) -> Column | None:
-        """Return `xydist(from, to)`: metres between percept and predicted world object."""
-        if (name, arguments) != (DISTANCE, ("from", "to")):
+        """Return a feature of percepts with predicted world objects.
+
+        - `xydist(from, to)`: metres between them;
+        - `deviation(from, to)`: the same in standard deviations of both.
+        """
+        if arguments != ("from", "to"):
             return None
-        distance: Floats = np.linalg.norm(lower["position"] - upper["position"], axis=1)
-        return distance
+        apart = lower["position"] - upper["position"]
+        if name == DISTANCE:
+            distance: Column = np.hypot(apart[:, 0], apart[:, 1])
+            return distance
+        if name == DEVIATION:
+            spread = lower["covariance"] + upper["covariance"][:, :2, :2]
+            scaled = np.linalg.solve(spread, apart[:, :, None])[:, :, 0]
+            deviation: Column = np.sqrt((apart * scaled).sum(axis=1))
+            return deviation
+        return None
 
     def places(self, upper: Table) -> tuple[Floats, Rows]:
         """Return the one position of each world object."""
