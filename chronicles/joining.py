@@ -120,7 +120,7 @@ class Joiner:
 
     def _joining(self, slot: Slot, parts: tuple[Stage, ...]) -> Recipe:
         """Return the recipe for an event that joins one instance of each of *parts*."""
-        if len(parts) == 1 and set(slot.pattern.variables) <= set(parts[0].variables):
+        if len(parts) == 1:
             return self._going_on(slot, parts[0])
         find = [self._finder(slot, part) for part in parts]
         mask = 1 << slot.index
@@ -132,8 +132,7 @@ class Joiner:
         filled = [part.filled for part in parts]
 
         def join(event: Event, now: int, values: Values) -> None:
-            found = [list(finder(now, values)) for finder in find]
-            for instances in product(*found):
+            for instances in product(*[finder(now, values) for finder in find]):
                 if not _fit(instances, filled):
                     continue
                 arranged = tuple([v for one in instances for v in one.values]) + values
@@ -161,18 +160,20 @@ class Joiner:
         return Instance(first.stage, first.values, times, events, latest)
 
     def _going_on(self, slot: Slot, part: Stage) -> Recipe:
-        """Return the recipe for an event that joins one instance and tells no new value."""
+        """Return the recipe for an event that joins one instance, the usual case."""
         at = slot.index
         mask = part.mask | 1 << at
         find = self._finder(slot, part)
         reach = self._reach(slot, tuple(j for j in part.open if j != at))
+        combine = self._combination(slot, part)
         allows = self._restriction(mask, (part,))
         stage: Stage | None = None
 
         def go_on(event: Event, now: int, values: Values) -> None:
             nonlocal stage
             for instance in find(now, values):
-                if allows is not None and not allows(instance.values):
+                arranged = combine(instance.values, values)
+                if allows is not None and not allows(arranged):
                     continue
                 latest = instance.latest.copy()
                 for j, limit in reach:
@@ -183,9 +184,19 @@ class Joiner:
                 events[at] = event
                 if stage is None:
                     stage = self._stage(mask)
-                self._admit(Instance(stage, instance.values, times, events, latest), now)
+                self._admit(Instance(stage, arranged, times, events, latest), now)
 
         return go_on
+
+    def _combination(self, slot: Slot, part: Stage) -> Callable[[Values, Values], Values]:
+        """Return a function that puts the values of an instance and of an event together."""
+        if set(slot.pattern.variables) <= set(part.variables):
+            return lambda old, _new: old
+        source = (*part.variables, *slot.pattern.variables)
+        arrange = self._arrangement(source, part.mask | 1 << slot.index)
+        if arrange is None:
+            return lambda old, new: (*old, *new)
+        return lambda old, new: arrange((*old, *new))
 
     def _finder(self, slot: Slot, part: Stage) -> _Find:
         """Return a function that finds the instances of *part* that an event fits to."""

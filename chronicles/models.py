@@ -41,9 +41,9 @@ class Slot:
     neighbours: int
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False)
 class Counter:
-    """An `occurs` or `noevent` predicate.
+    """An `occurs` or `noevent` predicate; each is equal only to itself.
 
     Attributes:
         least: Least number of events.

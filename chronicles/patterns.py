@@ -16,6 +16,9 @@ Values = tuple[str, ...]
 """The values of some variables, in an order that is known from elsewhere."""
 
 
+_Row = tuple[str | None, ...]
+
+
 class Pattern:
     """An event type, ready to be matched.
 
@@ -67,12 +70,7 @@ def projection(source: Sequence[str], target: Sequence[str]) -> Callable[[Values
     places = [source.index(name) for name in target]
     if places == list(range(len(source))):
         return None
-    if len(places) > 1:
-        return itemgetter(*places)
-    if not places:
-        return lambda _values: ()
-    (place,) = places
-    return lambda values: (values[place],)
+    return _picker(places)  # type: ignore[return-value]  # what is taken from values are values
 
 
 def key_of(source: Sequence[str], target: Sequence[str]) -> Callable[[Values], Values | str]:
@@ -84,6 +82,16 @@ def key_of(source: Sequence[str], target: Sequence[str]) -> Callable[[Values], V
 
 def _same(values: Values) -> Values:
     return values
+
+
+def _picker(places: Sequence[int]) -> Callable[[_Row], _Row]:
+    """Return a function that takes the entries at *places* out of a row."""
+    if len(places) > 1:
+        return itemgetter(*places)
+    if not places:
+        return lambda _row: ()
+    (place,) = places
+    return lambda row: (row[place],)
 
 
 def _parameters(event_type: EventType) -> tuple[Parameter, ...]:
@@ -134,10 +142,11 @@ def _general_match(
     for i, parameter in enumerate(parameters):
         if isinstance(parameter, Variable):
             at[parameter.name].append(i)
-    firsts = tuple(places[0] for places in at.values())
+    pick = _picker([places[0] for places in at.values()])
     same = tuple((places[0], other) for places in at.values() for other in places[1:])
+    unconditional = not constants and not same
 
-    def fits(row: tuple[str | None, ...]) -> bool:
+    def fits(row: _Row) -> bool:
         return all(row[place] == text for place, text in constants) and all(
             row[place] == row[other] for place, other in same
         )
@@ -147,9 +156,9 @@ def _general_match(
         if len(event.arguments) != n_arguments or is_message != (before is None and after is None):
             return None
         row = (*event.arguments, before, after)
-        if not fits(row):
+        if not (unconditional or fits(row)):
             return None
-        values = tuple([row[place] for place in firsts])
+        values = pick(row)
         return None if None in values else values  # type: ignore[return-value]  # just checked
 
     return match
