@@ -37,6 +37,7 @@ class Condition:
         reach: The distance in metres beyond which every comparison of the distance with a number
             is as true as infinitely far away.
         free_atoms: The numbers of the other atoms that mention the upper object.
+        mentions_upper: Whether any atom does.
     """
 
     def __init__(self, formula: Formula, unit: LinkUnit) -> None:
@@ -49,6 +50,7 @@ class Condition:
         self.free_atoms = tuple(i for i, reach in enumerate(reaches) if reach is None)
         self._bound_atoms = tuple(i for i, reach in enumerate(reaches) if reach is not None)
         self._features = _features(atoms)
+        self.mentions_upper = any(map(_mentions_upper, self._features))
         self._bound_features = _features(atoms[i] for i in self._bound_atoms)
         self._bound_columns = AtomColumns([atoms[i] for i in self._bound_atoms])
 

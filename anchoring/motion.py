@@ -73,7 +73,7 @@ def predict_in_plane(
 
 def update_in_plane(
     mean: Floats, covariance: Floats, position: Floats, noise: Floats
-) -> tuple[Floats, Floats, Floats]:
+) -> tuple[Floats, Floats]:
     """Correct states (x, y, vx, vy) by measured positions.
 
     Args:
@@ -81,18 +81,13 @@ def update_in_plane(
         covariance: shape (n, 4, 4).
         position: shape (n, 2), what was measured.
         noise: shape (n, 2, 2), covariance of the measurement.
-
-    Returns:
-        Mean, covariance, and how surprising each measurement was: the squared Mahalanobis
-        distance, shape (n,).
     """
     inverse = np.linalg.inv(covariance[:, :2, :2] + noise)
     gain = covariance[:, :, :2] @ inverse
     innovation = (position - mean[:, :2])[:, :, None]
-    surprise = (innovation.transpose(0, 2, 1) @ inverse @ innovation)[:, 0, 0]
     corrected = covariance - gain @ covariance[:, :2, :]
     corrected = (corrected + corrected.transpose(0, 2, 1)) / 2
-    return mean + (gain @ innovation)[:, :, 0], corrected, surprise
+    return mean + (gain @ innovation)[:, :, 0], corrected
 
 
 def _blocks(covariance: Floats) -> tuple[Floats, Floats, Floats]:

@@ -10,7 +10,7 @@ import numpy.typing as npt
 
 from anchoring.branches import Branches, BranchSettings, RoadFollower, grown_unseen
 from anchoring.motion import Floats
-from anchoring.rows import Rows, with_rows
+from anchoring.rows import Rows, take, with_rows
 from dyknow.streams.table import Column, Ids, Table
 from dyknow.time import SECOND, TimePoint
 from networks.roads import RoadMap
@@ -88,7 +88,7 @@ class OnRoadObject:
         """Return *upper* corrected by what was measured of the world objects *lower*."""
         upper = self._advanced(upper, now).with_columns(**_carried(lower))
         fresh = np.flatnonzero(lower["observed_at"] > upper["filtered_at"])
-        upper = with_rows(upper, fresh, self._corrected(upper.select(fresh), lower.select(fresh)))
+        upper = with_rows(upper, fresh, self._corrected(take(upper, fresh), take(lower, fresh)))
         lost = self._lost(upper, lower)
         upper = with_rows(upper, lost, self._matched(upper.select(lost), lower.select(lost), now))
         return self._placed(upper, lower["position"], now, observed=True)

@@ -22,7 +22,7 @@ import numpy as np
 from anchoring.candidates import Candidates, Unlinked
 from anchoring.conditions import Condition
 from anchoring.links import LinkSettings, LinkUnit
-from anchoring.rows import Mask, Rows, with_rows
+from anchoring.rows import Mask, Rows, take, with_rows
 from anchoring.structures import LinkHistory
 from dyknow.mtl.monitors import MonitorColumns
 from dyknow.streams.sample import Sample
@@ -116,7 +116,8 @@ class LinkProcess:
         standing, table = self._standing, self._uppers.table
         at = positions_of(standing.lower, lower.ids)
         on = positions_of(standing.upper, table.ids)
-        truth = standing.condition.truth(lower.select(at), table.select(on))
+        known = table.select(on) if standing.condition.mentions_upper else table.select(_NOBODY)
+        truth = standing.condition.truth(take(lower, at), known)
         violated = standing.monitor.step(now, truth) < 0
         broken = standing.lower[violated]
         self._unlink(standing.upper[violated], self._step + 1, now)
@@ -174,7 +175,7 @@ class LinkProcess:
         order = np.argsort(on)
         on, at = on[order], positions_of(standing.lower[order], lower.ids)
         if len(on):
-            states = self._unit.update(uppers.table.select(on), lower.select(at), now)
+            states = self._unit.update(take(uppers.table, on), take(lower, at), now)
             uppers.table = with_rows(uppers.table, on, states)
         uppers.anchored_at[on[observed[at]]] = now
 

@@ -18,10 +18,7 @@ _OWN_COLUMNS = frozenset({"position", "velocity", "covariance", "observed_at"})
 _FILTER_COLUMNS = frozenset({"filter_mean", "filter_covariance", "filtered_at"})
 
 
-_SURPRISE = 16.0
-"""Squared Mahalanobis distance of a position in the plane that one in 3000 exceeds."""
-
-_RESTART_AFTER = milliseconds(500)
+_RESTART_AFTER = milliseconds(300)
 
 
 class WorldObject:
@@ -34,7 +31,8 @@ class WorldObject:
         acceleration_density: How much objects accelerate: spectral density, m²/s³.
         velocity_deviation: How far the first velocity of a percept may be wrong, m/s.
         averaging: Share of a new percept in the averages.
-        restart_after: A percept that surprises after a gap as long as this starts the filter anew.
+        restart_after: After a gap as long as this the filter starts anew, because an object that
+            is found again may in truth be another one with another velocity.
     """
 
     sort = "world_object"
@@ -84,10 +82,10 @@ class WorldObject:
             np.maximum(elapsed, 0.0),
             self._density,
         )
-        mean, covariance, surprise = update_in_plane(
+        mean, covariance = update_in_plane(
             mean, covariance, lower["position"], lower["covariance"]
         )
-        anew = (elapsed * SECOND >= self._restart_after) & (surprise > _SURPRISE)
+        anew = elapsed * SECOND >= self._restart_after
         first_mean, first_covariance = self._begin(lower)
         mean = choose(anew, first_mean, mean)
         covariance = choose(anew, first_covariance, covariance)

@@ -83,14 +83,15 @@ def test_predicting_in_steps_changes_nothing(steps):
     np.testing.assert_allclose(stepwise["covariance"], at_once["covariance"])
 
 
-def test_a_surprise_after_a_gap_starts_anew():
-    """A percept far from where the object was expected after a gap is believed."""
+def test_after_a_gap_the_filter_starts_anew():
+    """What is found again after a gap is believed to be where it is, with its own velocity."""
     world = _after([(k * 1.0, 0.0) for k in range(30)])
     elsewhere = percepts([1], [(60.0, 40.0)], milliseconds(4900))
 
     found = UNIT.update(world, elsewhere, milliseconds(4900))
 
     np.testing.assert_allclose(found["position"], [[60.0, 40.0]])
+    np.testing.assert_allclose(found["velocity"], elsewhere["velocity"])
 
 
 def test_unknown_attributes_wait_for_known_ones():
