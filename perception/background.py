@@ -32,7 +32,6 @@ class BackgroundSettings:
     Attributes:
         darkest_shadow: What a shadow leaves of the light on the road; 1 for none.
         bound: Distance of the bounds from the mean, in deviations of the noise.
-        first_noise: Deviation of the noise, in grey levels, before it is measured.
         contrast: Grey levels by which vehicles of the first image differ from the road.
         strips: Number of frames in which every row is learned once.
         slowest_rate: Weight of a new image once many have been seen.
@@ -40,7 +39,6 @@ class BackgroundSettings:
 
     darkest_shadow: float = 1.0
     bound: float = 5.5
-    first_noise: float = 3.0
     contrast: float = 22.0
     strips: int = 10
     slowest_rate: float = 0.04
@@ -56,7 +54,7 @@ class Background:
         self._upper = np.empty_like(first)
         self._lower = np.empty_like(first)
         self._foreground = np.zeros(first.shape[:2], dtype=np.uint8)
-        self._noise = settings.first_noise
+        self._noise = _noise_of(first)
         self._strip = 0
         self._rounds = 0
         self._set_bounds(slice(None))
@@ -125,6 +123,16 @@ class Background:
         weight = 0.05 if self._rounds else 0.3
         self._noise += weight * (max(deviation, _LEAST_NOISE) - self._noise)
 
+
+def _noise_of(image: Image) -> float:
+    """Guess the deviation of the noise from one image: from neighbours that are nearly equal."""
+    off = np.abs(np.diff(image[::4].astype(np.int16), axis=1))
+    return max(_LEAST_NOISE, float(off[off <= _MOST_NOISE].mean()) / _MEAN_DIFFERENCE)
+
+
+_MOST_NOISE = 12
+_MEAN_DIFFERENCE = 1.128
+"""Mean distance of two draws from a normal distribution of deviation 1."""
 
 _RATE_OF_CHANGE = 0.25
 _LEAST_GHOSTLY = 0.6

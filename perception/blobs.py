@@ -14,8 +14,6 @@ from perception.painting import Image
 
 __all__ = ["Blobs", "Moments", "find_blobs", "mean_within", "outline_moments", "per_blob_mean"]
 
-_CLOSING = np.ones((3, 3), dtype=np.uint8)
-
 
 @dataclass(frozen=True)
 class Blobs:
@@ -49,6 +47,22 @@ class Blobs:
         lengths = np.fromiter(map(len, self.outlines), np.intp, len(self.outlines))
         return np.asarray(np.cumsum(lengths) - lengths)
 
+    @cached_property
+    def boxes(self) -> npt.NDArray[np.int32]:
+        """Left, top, right and lower pixel of each blob, shape (n, 4)."""
+        if not len(self):
+            return np.zeros((0, 4), np.int32)
+        low = np.minimum.reduceat(self.points, self.starts)
+        high = np.maximum.reduceat(self.points, self.starts)
+        return np.concatenate([low, high], axis=1)
+
+    def meets(self, others: "Blobs") -> npt.NDArray[np.bool_]:
+        """Return which blobs have a box in common with any of the blobs of another image."""
+        mine, theirs = self.boxes[:, None], others.boxes[None]
+        apart = (mine[..., :2] > theirs[..., 2:]) | (theirs[..., :2] > mine[..., 2:])
+        is_apart = apart[..., 0] | apart[..., 1]
+        return np.asarray(np.count_nonzero(~is_apart, axis=1) > 0)
+
 
 @dataclass(frozen=True, slots=True)
 class Moments:
@@ -65,22 +79,44 @@ class Moments:
     spread: npt.NDArray[np.float64]
 
 
-def find_blobs(foreground: Image, *, min_outline: int) -> Blobs:
-    """Return the regions of a mask whose outline has at least *min_outline* pixels.
+def find_blobs(
+    foreground: Image, *, bridged: int = 1, thinnest: int = 1, min_outline: int = 1
+) -> Blobs:
+    """Return the connected regions of a mask.
 
-    Gaps of a pixel are closed. *foreground* is overwritten.
+    Args:
+        foreground: Not zero where the image differs from the background.
+        bridged: Pixels; regions that are less apart than this become one.
+        thinnest: Pixels; what is thinner, such as a line on the road, is left out.
+        min_outline: Pixels that the border of a region has at least.
     """
-    cv2.morphologyEx(foreground, cv2.MORPH_CLOSE, _CLOSING, dst=foreground)
-    found, _ = cv2.findContours(foreground, cv2.RETR_EXTERNAL, cv2.CHAIN_APPROX_NONE)
+    solid = foreground
+    if bridged > 1:
+        solid = _narrow(_widen(solid, bridged), bridged)
+    if thinnest > 1:
+        solid = _widen(_narrow(solid, thinnest), thinnest)
+    found, _ = cv2.findContours(solid, cv2.RETR_EXTERNAL, cv2.CHAIN_APPROX_NONE)
     outlines = tuple(
         np.asarray(outline, dtype=np.int32).reshape(-1, 2)
         for outline in found
         if len(outline) >= min_outline
     )
     height, width = foreground.shape
+    boxes = Blobs(outlines, np.zeros(len(outlines), dtype=bool)).boxes
     last = np.array([width - 2, height - 2])
-    touches = [bool((o <= 1).any() or (o >= last).any()) for o in outlines]
-    return Blobs(outlines, np.array(touches, dtype=bool))
+    touches = (boxes[:, :2] <= 1) | (boxes[:, 2:] >= last)
+    return Blobs(outlines, touches[:, 0] | touches[:, 1])
+
+
+def _widen(mask: Image, side: int) -> Image:
+    kernel = np.ones((side, side), dtype=np.uint8)
+    return np.asarray(cv2.dilate(mask, kernel, anchor=(side - 1, side - 1)), dtype=np.uint8)
+
+
+def _narrow(mask: Image, side: int) -> Image:
+    """Undo `_widen`: the opposite anchor keeps even kernels from shifting the mask."""
+    kernel = np.ones((side, side), dtype=np.uint8)
+    return np.asarray(cv2.erode(mask, kernel, anchor=(0, 0)), dtype=np.uint8)
 
 
 def outline_moments(points: npt.NDArray[np.float64], starts: npt.NDArray[np.intp]) -> Moments:

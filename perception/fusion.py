@@ -21,15 +21,14 @@ _LEAST_FILL = 0.75
 """A colour blob that fills less of its rectangle is not a vehicle with a blind thermal spot."""
 
 
-def fuse(thermal: Sightings, colour: Sightings) -> tuple[Sightings, npt.NDArray[np.bool_]]:
-    """Return the sightings of both cameras without repetition, and which ones are thermal.
+def fuse(thermal: Sightings, colour: Sightings) -> Sightings:
+    """Return the sightings of both cameras without repetition, thermal ones first.
 
     A colour sighting and a thermal one are the same if the middle of either, or a point half way
     to its front or rear, lies in the other.
     """
     if not len(thermal) or not len(colour):
-        is_thermal = np.arange(len(thermal) + len(colour)) < len(thermal)
-        return concatenate([thermal, colour]), is_thermal
+        return concatenate([thermal, colour])
     same = _reaches_into(colour, thermal) | _reaches_into(thermal, colour).T
     is_alone = (same.sum(axis=0) == 1) & (same.sum(axis=1)[same.argmax(axis=0)] == 1)
     partner = same.argmax(axis=0)
@@ -38,9 +37,7 @@ def fuse(thermal: Sightings, colour: Sightings) -> tuple[Sightings, npt.NDArray[
     partial &= thermal.area < _LEAST_SHARE * colour.area[partner]
     keep_colour = np.asarray(~same.any(axis=1))
     keep_colour[partner[partial]] = True
-    chosen = [select(thermal, ~partial), select(colour, keep_colour)]
-    is_thermal = np.arange(sum(map(len, chosen))) < len(chosen[0])
-    return concatenate(chosen), is_thermal
+    return concatenate([select(thermal, ~partial), select(colour, keep_colour)])
 
 
 def _reaches_into(these: Sightings, others: Sightings) -> npt.NDArray[np.bool_]:

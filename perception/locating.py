@@ -26,14 +26,16 @@ _LENGTHS = np.array([2.5, 4.5, 5.3, 6.5, 12.0, 16.5])
 """Lengths of vehicles at which the figures below hold; between them they change evenly."""
 
 _HEIGHTS = np.array([1.5, 1.5, 1.5, 2.6, 3.4, 4.0])
-_MIDDLE_HEIGHTS = np.array([0.52, 0.52, 0.52, 1.2, 1.8, 2.1])
+_MIDDLE_HEIGHTS = np.array([0.5, 0.5, 0.5, 1.15, 1.9, 2.2])
 """Height of the point whose image is the outline's centroid: cars narrow upwards."""
 
 _SHIFT_ALONG = np.array([0.0, 0.4, 0.4, 0.5, 0.75, 0.75])
 _SHIFT_ACROSS = np.array([0.5, 0.65, 0.65, 0.75, 0.95, 0.95])
 """How much of the shift of the roof makes the outline longer, and broader."""
 
-_PIXEL_NOISE = 0.45
+_OBLIQUE_RISE = 0.05
+"""Metres by which that point rises for each metre that the ray reaches per metre of altitude."""
+
 _HEIGHT_NOISE = 0.15
 _FLOOR_NOISE = 0.05
 _LEAST_SIDE = 0.1
@@ -82,8 +84,14 @@ def height_from_length(length: npt.NDArray[np.float64]) -> npt.NDArray[np.float6
     return np.asarray(np.interp(length, _LENGTHS, _HEIGHTS))
 
 
-def locate(blobs: Blobs, camera: Camera) -> Sightings:
-    """Return where the blobs' vehicles stand and how long and wide they are."""
+def locate(blobs: Blobs, camera: Camera, *, noise_px: float) -> Sightings:
+    """Return where the blobs' vehicles stand and how long and wide they are.
+
+    Args:
+        blobs: What is taken for vehicles.
+        camera: Where the image was taken.
+        noise_px: Deviation of the centroids of outlines, in pixels along each axis.
+    """
     if not len(blobs):
         return no_sightings()
     outlines = camera.ground_from_image(blobs.points.astype(np.float64))
@@ -97,8 +105,10 @@ def locate(blobs: Blobs, camera: Camera) -> Sightings:
     shift_across = height * np.interp(long_side, _LENGTHS, _SHIFT_ACROSS) * across
     length = np.maximum(long_side - shift_along, _LEAST_SIDE)
     width = np.clip(short_side - shift_across, _LEAST_SIDE, length)
-    position = camera.raise_from_ground(moments.centroid, middle_height_from_length(length))
-    covariance = _covariance(slope, position, camera)
+    slant = np.hypot(along, across)
+    middle = middle_height_from_length(length) + _OBLIQUE_RISE * slant
+    position = camera.raise_from_ground(moments.centroid, middle)
+    covariance = _covariance(slope * noise_px, position, camera)
     rows = np.arange(len(blobs))
     return Sightings(position, covariance, length, width, angle, moments.area, rows)
 
@@ -129,8 +139,11 @@ def _shift_of_roof(
 def _covariance(
     slope: npt.NDArray[np.float64], position: Points, camera: Camera
 ) -> npt.NDArray[np.float64]:
-    """Return the covariance of positions from noise in pixels and in the height of vehicles."""
+    """Return the covariance of positions from noise in pixels and in the height of vehicles.
+
+    *slope* is how far on the ground one deviation of the noise in pixels reaches.
+    """
     towards = (position - np.array(camera.position[:2])) / camera.position[2]
-    from_pixels = _PIXEL_NOISE**2 * slope @ slope.transpose(0, 2, 1)
+    from_pixels = slope @ slope.transpose(0, 2, 1)
     from_height = _HEIGHT_NOISE**2 * towards[:, :, None] * towards[:, None, :]
     return np.asarray(from_pixels + from_height + _FLOOR_NOISE**2 * np.eye(2))

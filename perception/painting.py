@@ -24,6 +24,7 @@ __all__ = [
     "FloatImage",
     "GroundPainter",
     "Image",
+    "fill_areas",
     "fill_quads",
     "level_from_temperature",
     "make_texture",
@@ -107,6 +108,19 @@ def fill_quads(image: Image, quads: Points, colours: npt.NDArray[np.float64]) ->
         cv2.fillConvexPoly(image, quad, colour, cv2.LINE_AA, 4)
 
 
+def fill_areas(image: Image, areas: npt.NDArray[np.object_], camera: Camera, value: int) -> None:
+    """Fill polygons of the ground in an image as large as the camera's or a multiple of it."""
+    scale = image.shape[1] / camera.size[0]
+    view = shapely.Polygon(camera.footprint()).buffer(0.5)
+    seen = areas[shapely.intersects(areas, view)]
+    pieces = shapely.get_parts(shapely.intersection(shapely.make_valid(seen), view))
+    for piece in pieces[shapely.get_type_id(pieces) == shapely.GeometryType.POLYGON]:
+        rings = [piece.exterior, *piece.interiors]
+        outlines = [camera.image_from_ground(shapely.get_coordinates(r)[:-1]) for r in rings]
+        fixed = [np.rint((o * scale + (scale - 1) / 2) * 16.0).astype(np.int32) for o in outlines]
+        cv2.fillPoly(image, fixed, float(value), cv2.LINE_8, 4)
+
+
 @dataclass(frozen=True, slots=True, eq=False)
 class GroundPainter:
     """Paints one piece of country for any camera.
@@ -171,7 +185,7 @@ class GroundPainter:
             (Surface.PAINT, _strips(self.ground.stop_lines, _STOP_LINE_WIDTH)),
         )
         for surface, areas in layers:
-            _fill(surfaces, areas, view, camera, int(surface))
+            fill_areas(surfaces, areas, camera, int(surface))
         return surfaces
 
     def _texture_in(self, camera: Camera) -> FloatImage:
@@ -224,9 +238,8 @@ class GroundPainter:
     def _paint_shadows(self, image: Image, camera: Camera) -> None:
         """Darken the ground behind houses and trees, softly."""
         mask = np.zeros(image.shape[:2], dtype=np.uint8)
-        view = shapely.Polygon(camera.footprint()).buffer(0.5)
         buildings = self.surroundings.buildings
-        _fill(mask, _building_shadows(buildings), view, camera, 255)
+        fill_areas(mask, _building_shadows(buildings), camera, 255)
         for (u, v), radius, _ in self._trees_in(camera):
             centre = (int(u - 0.5 * radius * SUN[0]), int(v + 0.5 * radius * SUN[1]))
             cv2.circle(mask, centre, radius, 255.0, -1, cv2.LINE_AA, 4)
@@ -272,24 +285,6 @@ def _building_shadows(buildings: Points) -> npt.NDArray[np.object_]:
             shapely.multipoints(np.concatenate([corners, corners + shift], axis=1))
         )
     )
-
-
-def _fill(
-    image: Image,
-    areas: npt.NDArray[np.object_],
-    view: shapely.Polygon,
-    camera: Camera,
-    value: int,
-) -> None:
-    """Fill polygons of the ground, cut to the view, in an image of any resolution."""
-    scale = image.shape[1] / camera.size[0]
-    seen = areas[shapely.intersects(areas, view)]
-    pieces = shapely.get_parts(shapely.intersection(shapely.make_valid(seen), view))
-    for piece in pieces[shapely.get_type_id(pieces) == shapely.GeometryType.POLYGON]:
-        rings = [piece.exterior, *piece.interiors]
-        outlines = [camera.image_from_ground(shapely.get_coordinates(r)[:-1]) for r in rings]
-        fixed = [np.rint((o * scale + (scale - 1) / 2) * 16.0).astype(np.int32) for o in outlines]
-        cv2.fillPoly(image, fixed, float(value), cv2.LINE_8, 4)
 
 
 def _look_up(surfaces: Image, by_surface: npt.NDArray[np.float64]) -> FloatImage:

@@ -20,15 +20,31 @@ from perception.background import (
 )
 from perception.blobs import Blobs, find_blobs, mean_within
 from perception.camera import Camera, Points
-from perception.columns import select
-from perception.fusion import fuse, lies_in
+from perception.columns import concatenate, select
+from perception.fusion import fuse
+from perception.joining import Outlines, join
 from perception.locating import Sightings, locate, no_sightings
-from perception.painting import FloatImage, Image, temperature_from_level
+from perception.painting import FloatImage, Image, fill_areas, temperature_from_level
 from perception.scene import polygons_of
-from perception.splitting import Outlines, split
+from perception.splitting import split
 from perception.tracking import Tracker, TrackingSettings, Tracks
 
-__all__ = ["Eye", "Percepts", "Pipeline", "PipelineSettings", "road_mask"]
+__all__ = ["Eye", "EyeSettings", "Percepts", "Pipeline", "PipelineSettings", "road_mask"]
+
+
+@dataclass(frozen=True, slots=True)
+class EyeSettings:
+    """How one camera's images are read.
+
+    Attributes:
+        background: How the background is learned.
+        noise_px: Deviation of the centroids of outlines, in pixels.
+        bridged: Metres; parts of a vehicle that are less apart than this become one blob.
+    """
+
+    background: BackgroundSettings
+    noise_px: float
+    bridged: float = 0.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -39,25 +55,30 @@ class PipelineSettings:
         roadside: Metres beside the roads in which vehicles are still looked for.
         least_area: Square metres of the smallest vehicle's outline.
         least_width: Metres; anything narrower is a marking.
+        thinnest: Metres; parts thinner than this do not join what they touch.
         least_fill: Share of a vehicle's rectangle that its outline fills at least; crossed
             markings fill less.
         guard: Metres around blobs where the background is not learned.
         crowded: Share of the road that looks unlike the background when all of it is wrong.
-        colour: How the colour background is learned.
-        thermal: How the thermal background is learned.
+        colour: How colour images are read. Windows look like shadows and part what they are
+            between; windows, grey paint and shadows make outlines less certain.
+        thermal: How thermal images are read.
         tracking: How blobs are followed.
     """
 
     roadside: float = 1.5
     least_area: float = 0.9
     least_width: float = 0.5
+    thinnest: float = 0.6
     least_fill: float = 0.45
     guard: float = 2.5
     crowded: float = 0.6
-    colour: BackgroundSettings = field(
-        default_factory=lambda: BackgroundSettings(darkest_shadow=0.66)
+    colour: EyeSettings = field(
+        default_factory=lambda: EyeSettings(BackgroundSettings(darkest_shadow=0.66), 1.2, 1.0)
     )
-    thermal: BackgroundSettings = field(default_factory=lambda: BackgroundSettings(contrast=16.0))
+    thermal: EyeSettings = field(
+        default_factory=lambda: EyeSettings(BackgroundSettings(contrast=16.0), 0.4)
+    )
     tracking: TrackingSettings = field(default_factory=TrackingSettings)
 
 
@@ -116,12 +137,18 @@ class Pipeline:
         by_warmth = self._thermal.look(thermal, view)
         in_colour = self._colour.lay_ghosts(colour, by_colour, by_warmth, view)
         in_thermal = self._thermal.lay_ghosts(thermal, by_warmth, by_colour, view)
-        sightings, is_thermal = fuse(in_thermal, in_colour)
-        sightings.blob[~is_thermal] += len(by_warmth.blobs)
+        in_colour.blob[:] += len(by_warmth.blobs)
         outlines = by_warmth.blobs.outlines + by_colour.blobs.outlines
+        touches = [by_warmth.blobs.touches_border, by_colour.blobs.touches_border]
+        is_whole = ~np.concatenate(touches)
+        sightings = fuse(in_thermal, in_colour)
+        sightings = select(sightings, is_whole[sightings.blob])
+        shown = concatenate([in_thermal, in_colour])
+        shown = select(shown, is_whole[shown.blob])
         tracks = self._tracker.predict(time)
-        counts = tracks.hits >= self._settings.tracking.hits_to_count
-        sightings, outlines, is_part = split(sightings, outlines, select(tracks, counts), camera)
+        tracks = select(tracks, tracks.hits >= self._settings.tracking.hits_to_count)
+        sightings, outlines = join(sightings, outlines, shown, tracks, camera)
+        sightings, outlines, is_part = split(sightings, outlines, tracks, camera)
         seen, rows = self._tracker.update(sightings, is_part)
         learnable = self._away_from(outlines, view)
         self._colour.learn(colour, learnable)
@@ -164,6 +191,7 @@ class View:
         road: 255 where the image shows road, else 0.
         region: The same with the roadside: where vehicles are looked for.
         region_size: Number of pixels of the region.
+        thinnest: Pixels across the thinnest part of a vehicle.
         min_outline: Pixels on the border of the smallest vehicle, about.
         learnable: A mask to be written to.
     """
@@ -173,6 +201,7 @@ class View:
     road: Image
     region: Image
     region_size: int
+    thinnest: int
     min_outline: int
     learnable: Image
 
@@ -187,6 +216,7 @@ class View:
             road_mask(roads, camera, margin=-_ROAD_EDGE),
             region,
             max(1, cv2.countNonZero(region)),
+            max(1, int(settings.thinnest / scale)),
             max(6, round(math.sqrt(settings.least_area) / scale)),
             np.empty_like(region),
         )
@@ -213,9 +243,10 @@ _NOTHING_SEEN = Look(Blobs((), np.zeros(0, bool)), no_sightings(), np.zeros(0, b
 class Eye:
     """One camera's way from image to sightings, with its background."""
 
-    def __init__(self, settings: PipelineSettings, background: BackgroundSettings) -> None:
+    def __init__(self, settings: PipelineSettings, own: EyeSettings) -> None:
+        """Read images with *settings*, and its *own* for this camera."""
         self._settings = settings
-        self._background_settings = background
+        self._own = own
         self._background: Background | None = None
 
     @property
@@ -225,11 +256,11 @@ class Eye:
 
     def find_standing(self, image: Image, view: View) -> Image:
         """Return where vehicles seem to stand, from one image alone."""
-        return find_standing(image, view.road, self._background_settings, view.scale)
+        return find_standing(image, view.road, self._own.background, view.scale)
 
     def begin(self, image: Image, standing: Image, view: View) -> None:
         """Begin to learn the background."""
-        settings = self._background_settings
+        settings = self._own.background
         empty = guess_empty_road(image, view.road, standing, settings, view.scale)
         self._background = Background(empty, settings)
 
@@ -238,7 +269,7 @@ class Eye:
         if image is None or self._background is None:
             return _NOTHING_SEEN
         blobs = self._find(image, self._background, view)
-        sightings = locate(blobs, view.camera)
+        sightings = locate(blobs, view.camera, noise_px=self._own.noise_px)
         rectangle = sightings.length * sightings.width
         is_vehicle = (
             (sightings.area >= self._settings.least_area)
@@ -252,16 +283,15 @@ class Eye:
     def lay_ghosts(
         self, image: Image | None, look: "Look", other: "Look", view: View
     ) -> Sightings:
-        """Return the sightings that are wholly in view and real; learn the road under the rest.
+        """Return the sightings that are real, and learn the road under the others.
 
         A ghost is believed only where the other camera sees nothing: a grey car that hides a
         marking looks like the ghost of the marking.
         """
-        living = select(other.sightings, ~other.is_ghost)
-        is_ghost = look.is_ghost & ~lies_in(look.sightings.position, living).any(axis=1)
+        is_ghost = look.is_ghost & ~look.blobs.meets(other.blobs.select(~other.is_ghost))
         if is_ghost.any() and image is not None and self._background is not None:
             self._background.adopt(image, _area_of(look.blobs.select(is_ghost).outlines, view))
-        return select(look.sightings, ~is_ghost & ~look.blobs.touches_border)
+        return select(look.sightings, ~is_ghost)
 
     def learn(self, image: Image | None, learnable: Image) -> None:
         """Learn the background where *learnable* is not zero."""
@@ -271,9 +301,14 @@ class Eye:
     def _find(self, image: Image, background: Background, view: View) -> Blobs:
         foreground = background.foreground(image, view.region)
         if cv2.countNonZero(foreground) > self._settings.crowded * view.region_size:
-            self._background = background = Background(image, self._background_settings)
+            self._background = background = Background(image, self._own.background)
             foreground = background.foreground(image, view.region)
-        return find_blobs(foreground, min_outline=view.min_outline)
+        return find_blobs(
+            foreground,
+            bridged=1 + int(self._own.bridged / view.scale),
+            thinnest=view.thinnest,
+            min_outline=view.min_outline,
+        )
 
 
 def _area_of(outlines: Outlines, view: View) -> Image:
@@ -285,20 +320,15 @@ def _area_of(outlines: Outlines, view: View) -> Image:
 
 
 _ROAD_EDGE = 0.3
+_SEAM = 0.05
+"""Metres by which outlines grow so that those that meet leave no seam."""
 
 
 def road_mask(roads: Sequence[Points], camera: Camera, *, margin: float) -> Image:
     """Return where the image shows roads, widened by *margin* metres: 255, elsewhere 0."""
     mask = np.zeros((camera.size[1], camera.size[0]), dtype=np.uint8)
-    view = shapely.Polygon(camera.footprint()).buffer(1.0)
-    areas = polygons_of(roads)
-    whole = shapely.union_all(shapely.buffer(areas, 0.05).tolist()).buffer(margin)
-    for piece in shapely.get_parts(whole.intersection(view)):
-        rings = [shapely.get_coordinates(ring) for ring in (piece.exterior, *piece.interiors)]
-        pixels = [
-            np.rint(camera.image_from_ground(ring) * 16.0).astype(np.int32) for ring in rings
-        ]
-        cv2.fillPoly(mask, pixels, 255.0, cv2.LINE_8, 4)
+    whole = shapely.union_all(shapely.buffer(polygons_of(roads), _SEAM)).buffer(margin)
+    fill_areas(mask, shapely.get_parts(whole), camera, 255)
     return mask
 
 

@@ -12,15 +12,18 @@ import numpy.typing as npt
 from perception.camera import Camera, Points
 from perception.columns import concatenate, select
 from perception.fusion import lies_in
+from perception.joining import Outlines
 from perception.locating import Sightings, middle_height_from_length
 from perception.tracking import Tracks, as_sightings
 
-__all__ = ["Outlines", "split"]
-
-Outlines = tuple[npt.NDArray[np.int32], ...]
+__all__ = ["split"]
 
 _LEAST_GROWTH = 0.4
 """A blob is cut only if it is larger than its largest vehicle by this share of the others."""
+
+_LONGEST_CAR = 5.7
+_WIDEST_CAR = 2.5
+"""What is no larger than a car is one, even if its pieces were followed before."""
 
 _LEAST_SHARE = 0.35
 """A part with less than this share of its vehicle's area says nothing: the vehicle is hidden."""
@@ -75,6 +78,7 @@ def _find_merged(
     member_area = np.where(members, expected.area[:, None], 0.0)
     largest, total = member_area.max(axis=0), member_area.sum(axis=0)
     is_larger = sightings.length * sightings.width > largest + _LEAST_GROWTH * (total - largest)
+    is_larger &= (sightings.length > _LONGEST_CAR) | (sightings.width > _WIDEST_CAR)
     return np.flatnonzero((members.sum(axis=0) > 1) & is_larger), members
 
 
