@@ -184,13 +184,15 @@ def guess_empty_road(
         metres_per_pixel: Scale of the image.
     """
     usual = _usual(first, road)
+    smooth = np.asarray(cv2.blur(first, (3, 3)), dtype=np.float32)
+    is_marking = _any_channel(smooth > usual + settings.contrast)
     replaced = cv2.dilate(standing, _square(5)) != 0
     if settings.darkest_shadow < 1.0:
         reach = 2 * round(_SHADOW_REACH / metres_per_pixel) + 1
-        is_marking = _any_channel(cv2.blur(first, (3, 3)) > usual + settings.contrast)
         replaced |= (cv2.dilate(standing, _square(reach)) != 0) & ~is_marking
     replaced &= road != 0
-    around = _mean_around(first, (road != 0) & ~replaced, usual, metres_per_pixel)
+    plain = (road != 0) & ~replaced & ~is_marking
+    around = _mean_around(first, plain, usual, metres_per_pixel)
     filled = first.copy()
     filled[replaced] = np.clip(np.rint(around[replaced]), 0, 255).astype(np.uint8)
     return filled
