@@ -4,9 +4,9 @@ Read in this order: `syntax` (what a chronicle says), `parser` and `printer` (te
 and back), `constraints` (simple temporal networks), `check` (every fault of a file), `events`
 (what goes in and comes out), `patterns` and `models` (chronicles prepared for recognition),
 `instances` (partial instances and how they are found), `counting`, `matching` (which instances
-begin, go on, complete, or die), `reporting` (which matches are reported), `prospects` (partial
-instances as people see them), `recognition` (the recogniser), `processes` (the recogniser on
-streams); `errors`.
+begin, go on, complete, or die), `joining` (how an event joins them), `reporting` (which matches
+are reported), `prospects` (partial instances as people see them), `recognition` (the
+recogniser), `processes` (the recogniser on streams); `errors`.
 """
 
 from chronicles.events import Event, Recognition

@@ -1,5 +1,6 @@
-"""The commands, one module each; the only place that prints.
+"""The commands `run`, `report`, `check`, `network` and `scenarios`; the only place that prints.
 
-What they do stands in functions that a script can call as well: `traffic.running.run_scenario`,
+One module each, and `showing` for the tables and progress bars that they share. What they do
+stands in functions that a script can call as well: `traffic.running.run_scenario`,
 `traffic.results.read_result`, `traffic.checking.faults_of_file`.
 """
