@@ -16,7 +16,9 @@ Modules, in reading order:
 - `kalman`: a filter of constant velocity for many objects at once;
 - `assignment`: which of two groups belong together;
 - `tracking`: blobs kept apart from frame to frame;
+- `joining`: the pieces of one tracked vehicle made one;
 - `splitting`: blobs that cover several vehicles, cut into parts;
+- `stains`: marks on the road told from vehicles;
 - `pipeline`: all of this, from two images to percepts;
 - `overlay`: what the system believes, drawn onto the images;
 - `processes`: cameras and perception as knowledge processes.

@@ -155,9 +155,8 @@ def find_standing(
         metres_per_pixel: Scale of the image; markings are told from vehicles by their breadth.
     """
     usual = _usual(first, road)
-    smooth = np.asarray(cv2.blur(first, (3, 3)), dtype=np.float32)
-    brighter = smooth > usual + settings.contrast
-    darker = smooth < settings.darkest_shadow * usual - 0.7 * settings.contrast
+    brighter = first > usual + settings.contrast
+    darker = first < settings.darkest_shadow * usual - 0.7 * settings.contrast
     differs = _any_channel(brighter | darker) & (road != 0)
     side = max(3, round(_BROADEST_MARKING / metres_per_pixel) | 1)
     return np.asarray(
@@ -184,8 +183,7 @@ def guess_empty_road(
         metres_per_pixel: Scale of the image.
     """
     usual = _usual(first, road)
-    smooth = np.asarray(cv2.blur(first, (3, 3)), dtype=np.float32)
-    is_marking = _any_channel(smooth > usual + settings.contrast)
+    is_marking = _any_channel(first > usual + settings.contrast)
     replaced = cv2.dilate(standing, _square(5)) != 0
     if settings.darkest_shadow < 1.0:
         reach = 2 * round(_SHADOW_REACH / metres_per_pixel) + 1

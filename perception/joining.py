@@ -18,9 +18,12 @@ from perception.fusion import lies_in
 from perception.locating import Sightings, locate
 from perception.tracking import Tracks, as_sightings
 
-__all__ = ["Outlines", "join"]
+__all__ = ["Outline", "Outlines", "join"]
 
-Outlines = tuple[npt.NDArray[np.int32], ...]
+Outline = npt.NDArray[np.int32]
+"""Pixels around a blob, shape (k, 2)."""
+
+Outlines = tuple[Outline, ...]
 
 _HITS_TO_KNOW_SIZE = 8
 _LEAST_SHARE = 0.8
@@ -65,6 +68,6 @@ def join(
     return together, (*outlines, *hulls)
 
 
-def _hull(outlines: Sequence[npt.NDArray[np.int32]]) -> npt.NDArray[np.int32]:
+def _hull(outlines: Sequence[Outline]) -> Outline:
     """Return the corners (k, 2) of the convex hull of several outlines."""
     return np.asarray(cv2.convexHull(np.concatenate(outlines)), dtype=np.int32).reshape(-1, 2)

@@ -22,11 +22,12 @@ from perception.blobs import Blobs, find_blobs, mean_within
 from perception.camera import Camera, Points
 from perception.columns import concatenate, select
 from perception.fusion import fuse
-from perception.joining import Outlines, join
+from perception.joining import Outline, Outlines, join
 from perception.locating import Sightings, locate, no_sightings
 from perception.painting import FloatImage, Image, fill_areas, temperature_from_level
 from perception.scene import polygons_of
 from perception.splitting import split
+from perception.stains import Stains
 from perception.tracking import Tracker, TrackingSettings, Tracks
 
 __all__ = ["Eye", "EyeSettings", "Percepts", "Pipeline", "PipelineSettings", "road_mask"]
@@ -118,6 +119,7 @@ class Pipeline:
         self._roads = roads
         self._settings = settings or PipelineSettings()
         self._tracker = Tracker(self._settings.tracking)
+        self._stains = Stains()
         self._view: View | None = None
 
     def perceive(
@@ -127,11 +129,7 @@ class Pipeline:
 
         Another pose of the camera begins the learning of the background anew.
         """
-        if self._view is None or self._view.camera != camera:
-            self._view = View.of(self._roads, camera, self._settings)
-            self._colour = Eye(self._settings, self._settings.colour)
-            self._thermal = Eye(self._settings, self._settings.thermal)
-        view = self._view
+        view = self._view_of(camera)
         self._begin(view, colour, thermal)
         by_colour = self._colour.look(colour, view)
         by_warmth = self._thermal.look(thermal, view)
@@ -139,21 +137,31 @@ class Pipeline:
         in_thermal = self._thermal.lay_ghosts(thermal, by_warmth, by_colour, view)
         in_colour.blob[:] += len(by_warmth.blobs)
         outlines = by_warmth.blobs.outlines + by_colour.blobs.outlines
-        touches = [by_warmth.blobs.touches_border, by_colour.blobs.touches_border]
-        is_whole = ~np.concatenate(touches)
-        sightings = fuse(in_thermal, in_colour)
-        sightings = select(sightings, is_whole[sightings.blob])
-        shown = concatenate([in_thermal, in_colour])
-        shown = select(shown, is_whole[shown.blob])
+        is_cut = np.concatenate([by_warmth.blobs.touches_border, by_colour.blobs.touches_border])
+        sightings = _leave_out(fuse(in_thermal, in_colour), is_cut)
+        shown = _leave_out(concatenate([in_thermal, in_colour]), is_cut)
         tracks = self._tracker.predict(time)
         tracks = select(tracks, tracks.hits >= self._settings.tracking.hits_to_count)
         sightings, outlines = join(sightings, outlines, shown, tracks, camera)
         sightings, outlines, is_part = split(sightings, outlines, tracks, camera)
         seen, rows = self._tracker.update(sightings, is_part)
+        sightings = select(sightings, rows)
+        is_colour_only = (sightings.blob >= len(by_warmth.blobs)) & (sightings.blob < len(is_cut))
+        is_doubtful = is_colour_only & (thermal is not None)
+        believed, stains = self._stains.judge(time, seen.ids, sightings.position, is_doubtful)
+        self._colour.adopt(colour, [outlines[blob] for blob in sightings.blob[stains]], view)
         learnable = self._away_from(outlines, view)
         self._colour.learn(colour, learnable)
         self._thermal.learn(thermal, learnable)
-        return _percepts(seen, select(sightings, rows), outlines, colour, thermal)
+        return select(_percepts(seen, sightings, outlines, colour, thermal), believed)
+
+    def _view_of(self, camera: Camera) -> "View":
+        """Return the map as *camera* sees it; a new pose needs new eyes."""
+        if self._view is None or self._view.camera != camera:
+            self._view = View.of(self._roads, camera, self._settings)
+            self._colour = Eye(self._settings, self._settings.colour)
+            self._thermal = Eye(self._settings, self._settings.thermal)
+        return self._view
 
     def _begin(self, view: "View", colour: Image | None, thermal: Image | None) -> None:
         """Begin to learn with the first image of each camera.
@@ -275,6 +283,7 @@ class Eye:
             (sightings.area >= self._settings.least_area)
             & (sightings.width >= self._settings.least_width)
             & (sightings.area >= self._settings.least_fill * rectangle)
+            & ((sightings.width >= _NARROW) | (sightings.width >= _SLIM * sightings.length))
         )
         blobs, sightings = blobs.select(is_vehicle), select(sightings, is_vehicle)
         sightings.blob[:] = np.arange(len(blobs))
@@ -289,9 +298,13 @@ class Eye:
         marking looks like the ghost of the marking.
         """
         is_ghost = look.is_ghost & ~look.blobs.meets(other.blobs.select(~other.is_ghost))
-        if is_ghost.any() and image is not None and self._background is not None:
-            self._background.adopt(image, _area_of(look.blobs.select(is_ghost).outlines, view))
+        self.adopt(image, look.blobs.select(is_ghost).outlines, view)
         return select(look.sightings, ~is_ghost)
+
+    def adopt(self, image: Image | None, outlines: Sequence[Outline], view: View) -> None:
+        """Take what lies in *outlines* for the empty road from now on."""
+        if len(outlines) and image is not None and self._background is not None:
+            self._background.adopt(image, _area_of(outlines, view))
 
     def learn(self, image: Image | None, learnable: Image) -> None:
         """Learn the background where *learnable* is not zero."""
@@ -311,13 +324,22 @@ class Eye:
         )
 
 
-def _area_of(outlines: Outlines, view: View) -> Image:
+def _area_of(outlines: Sequence[Outline], view: View) -> Image:
     """Return a mask of what lies in *outlines* and next to it."""
     mask = np.zeros_like(view.region)
     cv2.drawContours(mask, outlines, -1, 255.0, 5)
     cv2.drawContours(mask, outlines, -1, 255.0, cv2.FILLED)
     return mask
 
+
+def _leave_out(sightings: Sightings, is_cut: npt.NDArray[np.bool_]) -> Sightings:
+    """Return the sightings whose blobs are wholly in the image."""
+    return select(sightings, ~is_cut[sightings.blob])
+
+
+_NARROW = 1.5
+_SLIM = 0.3
+"""What is narrower than a car and slimmer than a motorcycle is a marking."""
 
 _ROAD_EDGE = 0.3
 _SEAM = 0.05

@@ -29,7 +29,8 @@ class TrackingSettings:
 
     Attributes:
         acceleration: Deviation of the acceleration of vehicles along each axis, m/s².
-        gate: Greatest squared Mahalanobis distance between a track and its sighting.
+        gate: Greatest squared Mahalanobis distance between a track and its sighting; wide, since
+            vehicles keep off one another and none may be lost when it jerks.
         hits_to_count: Sightings after which a track counts.
         longest_gap: Nanoseconds without a sighting after which a track ends.
         longest_first_gap: The same for a track that does not count yet.
@@ -38,11 +39,11 @@ class TrackingSettings:
     """
 
     acceleration: float = 4.0
-    gate: float = 16.0
+    gate: float = 50.0
     hits_to_count: int = 3
     longest_gap: int = 300_000_000
     longest_first_gap: int = 60_000_000
-    first_speed: float = 15.0
+    first_speed: float = 8.0
     memory: float = 0.08
 
 
