@@ -15,9 +15,10 @@ __all__ = ["Car"]
 class Car:
     """Computes cars from on-road objects: the same states, and where they are on the map.
 
-    Added are `lane`, `link` and `crossing` (indices into the road map, -1 for none), the
-    `direction_in_link` of the road (1 along the link, -1 against it) and the
-    `position_along_link` in metres.
+    Added are the areas in which a car is, `lane`, `link` and `crossing` (indices into the road map,
+    -1 for none), and, of the road it travels on, whether in its areas or beside them, the
+    `link_of_road` (-1 in crossings), the `direction_in_link` (1 along the link, -1 against it)
+    and the `position_along_link` in metres.
 
     Args:
         roads: The road network.
@@ -74,6 +75,7 @@ class Car:
             lane=areas.lane,
             link=areas.link,
             crossing=areas.crossing,
+            link_of_road=roads.link_of_road[road],
             direction_in_link=direction,
             position_along_link=roads.offset_in_link[road] + direction * upper["s"],
             computed_at=np.full(len(upper), now, dtype=np.int64),

@@ -55,7 +55,7 @@ def near_pairs_along(
 
 
 class NearPairs:
-    """Pairs of active cars on the same link in the same direction, at most *distance* apart.
+    """Pairs of active cars on roads of one link in one direction, at most *distance* apart.
 
     For each table of cars one table of pairs comes out, both orders of each pair: columns
     `first` and `second` (car ids), `ahead` (metres that the second car's centre is ahead of the
@@ -89,7 +89,7 @@ class NearPairs:
         return None
 
     def _pairs(self, cars: Table) -> Table:
-        direction, link = cars["direction_in_link"], cars["link"].astype(np.int64)
+        direction, link = cars["direction_in_link"], cars["link_of_road"].astype(np.int64)
         along = direction * cars["position_along_link"]
         group = np.where(link >= 0, 2 * link + (direction > 0), -1)
         behind, ahead = near_pairs_along(group, along, self._distance)
