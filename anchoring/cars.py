@@ -15,7 +15,7 @@ __all__ = ["Car"]
 class Car:
     """Computes cars from on-road objects: the same states, and where they are on the map.
 
-    Added are the areas in which a car is, `lane`, `link` and `crossing` (indices into the road map,
+    Added are the areas in which a car is, `lane`, `link` and `crossing` (indices into the map,
     -1 for none), and, of the road it travels on, whether in its areas or beside them, the
     `link_of_road` (-1 in crossings), the `direction_in_link` (1 along the link, -1 against it)
     and the `position_along_link` in metres.
