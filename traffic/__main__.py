@@ -1,17 +1,16 @@
 """The command line: collects the commands and turns errors into messages.
 
-Exit status: 0 done, 1 a bug, 2 the user's input is at fault, 130 interrupted.
+Exit status: 0 done, 1 a bug, 2 the user's input is at fault, 130 interrupted, 143 terminated.
 """
 
+import signal
 import sys
+from types import FrameType
 
 import typer
 
-from dyknow.errors import DyKnowError, SpecificationError, SpecificationErrors
-from networks.errors import NetworkError
-from perception.errors import PerceptionError
 from traffic.commands import check, network, report, run, scenarios
-from traffic.errors import TrafficError
+from traffic.commands.complaining import complaint_about
 
 __all__ = ["app", "main"]
 
@@ -28,28 +27,37 @@ app.command("check")(check.check)
 app.add_typer(network.app, name="network")
 app.command("scenarios")(scenarios.scenarios)
 
-_USER_ERRORS = (DyKnowError, NetworkError, PerceptionError, TrafficError)
+_STOPS = {signal.SIGINT: "interrupted", signal.SIGTERM: "terminated"}
+
+
+class _StopError(SystemExit):
+    """Someone wants the program to stop; what is half done is cleaned up on the way out."""
+
+    def __init__(self, number: signal.Signals) -> None:
+        super().__init__(128 + number)
+        self.reason = _STOPS[number]
 
 
 def main() -> None:
     """Run the command line; the console script `traffic`."""
+    for number in _STOPS:
+        if signal.getsignal(number) is not signal.SIG_IGN:
+            signal.signal(number, _stop)
     try:
         app()
-    except SpecificationErrors as errors:
-        for error in errors.exceptions:
-            _complain(error)
+    except _StopError as stop:
+        sys.stderr.write(f"traffic: {stop.reason}\n")
+        raise
+    except Exception as error:
+        complaint = complaint_about(error)
+        if complaint is None:
+            raise
+        sys.stderr.write(f"{complaint}\n")
         sys.exit(2)
-    except _USER_ERRORS as error:
-        _complain(error)
-        sys.exit(2)
-    except KeyboardInterrupt:
-        sys.stderr.write("interrupted\n")
-        sys.exit(130)
 
 
-def _complain(error: Exception) -> None:
-    text = error.report() if isinstance(error, SpecificationError) else f"traffic: {error}"
-    sys.stderr.write(text + "\n")
+def _stop(number: int, _frame: FrameType | None) -> None:
+    raise _StopError(signal.Signals(number))
 
 
 if __name__ == "__main__":

@@ -22,10 +22,10 @@ def faults_of_file(path: Path) -> list[str]:
     """Return a text for each fault of the file, beginning with its place.
 
     The ending of the name says what it is: `.kpl`, `.chronicle`, `.mtl` (a formula) or `.toml` (a
-    scenario).
+    scenario). That a file cannot be read is its only fault then.
 
     Raises:
-        RequestError: The ending is none of these, or the file cannot be read.
+        RequestError: The ending is none of these.
     """
     if path.suffix == ".toml":
         return _faults_of_scenario(path)
@@ -36,9 +36,9 @@ def faults_of_file(path: Path) -> list[str]:
     try:
         return [fault.report() for fault in find(path.read_text(encoding="utf-8"), str(path))]
     except OSError as error:
-        raise RequestError("FILE", f"a readable file ({error.strerror})", path) from error
-    except UnicodeDecodeError as error:
-        raise RequestError("FILE", "text in UTF-8", path) from error
+        return [f"cannot read '{path}': {error.strerror}"]
+    except UnicodeDecodeError:
+        return [f"'{path}' is not a text in UTF-8"]
 
 
 def _faults_of_scenario(path: Path) -> list[str]:

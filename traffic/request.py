@@ -14,6 +14,7 @@ __all__ = ["RunRequest", "View"]
 _FRAME_PERIOD = Duration(40 * MILLISECOND)
 _LONGEST_STEP = 100
 _SHORTEST_PERIOD = 10
+_FARTHEST = 1e7
 _HOVER = CameraSettings(look_at=(0.0, 0.0), altitude=150.0, field_of_view=84.0)
 """From where a crossing is watched of which no scenario says how."""
 
@@ -35,7 +36,7 @@ class RunRequest:
         sample_period: Period of the reasoning.
         position_noise: Largest error of positions per axis, metres; only without cameras.
         seed: Of everything random.
-        out: Folder of the run.
+        out: Folder of the run; None for a new one in `runs`.
         overlay: Video of what is believed, if wanted.
     """
 
@@ -44,7 +45,7 @@ class RunRequest:
     sample_period: Duration
     position_noise: float
     seed: int
-    out: Path
+    out: Path | None
     overlay: Path | None
 
     @classmethod
@@ -98,7 +99,7 @@ class RunRequest:
             sample_period=period,
             position_noise=position_noise,
             seed=seed,
-            out=out if out is not None else _free_folder(asked.name),
+            out=out,
             overlay=overlay,
         )
 
@@ -162,19 +163,16 @@ def _step(period: Duration) -> Duration:
 
 
 def _hover(look_at: str, camera: CameraSettings | None) -> CameraSettings:
-    x, comma, y = look_at.partition(",")
-    place: str | tuple[float, float] = look_at
-    if comma:
-        try:
-            place = (float(x), float(y))
-        except ValueError:
-            place = look_at
-    return (camera or _HOVER).model_copy(update={"look_at": place})
+    return (camera or _HOVER).model_copy(update={"look_at": _place(look_at)})
 
 
-def _free_folder(name: str) -> Path:
-    """Return the first folder `runs/NAME-0001`, `runs/NAME-0002`, … that does not exist."""
-    number = 1
-    while (folder := Path("runs") / f"{name}-{number:04d}").exists():
-        number += 1
-    return folder
+def _place(text: str) -> str | tuple[float, float]:
+    """Return the point that *text* says, or *text* itself as the name of a junction."""
+    x, _, y = text.partition(",")
+    try:
+        point = float(x), float(y)
+    except ValueError:
+        return text
+    if not all(abs(number) <= _FARTHEST for number in point):
+        raise RequestError("--look-at", f"metres, at most {_FARTHEST:.0f}", text)
+    return point

@@ -19,12 +19,14 @@ __all__ = [
     "RunResult",
     "Score",
     "Timing",
+    "new_folder",
     "read_result",
     "run_folder",
     "write_result",
 ]
 
 _RESULT_FILE = "result.json"
+_PARTIAL = ".partial"
 
 
 class _Value(BaseModel):
@@ -138,21 +140,35 @@ def run_folder(path: Path) -> Iterator[Path]:
     """Give a folder to write a run into, which becomes *path* when the block ends well.
 
     Raises:
-        ResultError: *path* exists already or cannot be made.
+        ResultError: *path* exists already or cannot be made, or another run is to become it.
     """
-    if path.exists():
-        raise ResultError(f"'{path}' exists already; a run never changes what is there")
-    partial = path.with_name(path.name + ".partial")
+    partial = path.with_name(f"{path.name}{_PARTIAL}")
     try:
-        shutil.rmtree(partial, ignore_errors=True)
+        if path.exists():
+            raise ResultError(f"'{path}' exists already; a run never changes what is there")
         partial.mkdir(parents=True)
+    except FileExistsError as error:
+        raise ResultError(
+            f"'{partial}' exists: a run is writing there, or was killed and left it; "
+            "choose another folder, or remove that one"
+        ) from error
     except OSError as error:
-        raise ResultError(f"cannot write to '{path.parent}': {error.strerror}") from error
+        raise ResultError(f"cannot write to '{path}': {error.strerror}") from error
     try:
         yield partial
-        partial.rename(path)
+        _rename(partial, path)
     finally:
         shutil.rmtree(partial, ignore_errors=True)
+
+
+def new_folder(name: str) -> Path:
+    """Return the first of `runs/NAME-0001`, `runs/NAME-0002`, … that no run has or is writing."""
+    number = 1
+    while (path := Path("runs") / f"{name}-{number:04d}").exists() or (
+        path.with_name(f"{path.name}{_PARTIAL}").exists()
+    ):
+        number += 1
+    return path
 
 
 def write_result(result: RunResult, folder: Path) -> None:
@@ -173,6 +189,13 @@ def read_result(folder: Path) -> RunResult:
         raise ResultError(f"'{folder}' holds no finished run: {error.strerror}") from error
     except (ValidationError, UnicodeDecodeError) as error:
         raise ResultError(f"'{path}' is not the result of a run: {_first_fault(error)}") from error
+
+
+def _rename(partial: Path, path: Path) -> None:
+    try:
+        partial.rename(path)
+    except OSError as error:
+        raise ResultError(f"cannot write to '{path}': {error.strerror}") from error
 
 
 def _first_fault(error: ValidationError | UnicodeDecodeError) -> str:

@@ -16,9 +16,10 @@ from networks.reading import read_road_map
 from networks.roads import RoadMap
 from perception.camera import Calibration, Camera
 from traffic.errors import ScenarioError
+from traffic.origin import write_origin
 from traffic.overlaying import Overlay
 from traffic.request import RunRequest, View
-from traffic.results import RunResult, Timing, run_folder, write_result
+from traffic.results import RunResult, Timing, new_folder, run_folder, write_result
 from traffic.scenarios import CameraSettings
 from traffic.scoring.score import Scorer
 from traffic.sumo.opening import network_of, open_simulation
@@ -45,24 +46,29 @@ def run_scenario(request: RunRequest, on_progress: OnProgress) -> tuple[RunResul
     road_map = read_road_map(network_of(request.scenario))
     camera = _camera(request.scenario.camera, road_map) if request.view is View.VISION else None
     traffic, sensors = np.random.default_rng(request.seed).spawn(2)  # noqa: TID251, the run's
+    path = request.out or new_folder(request.scenario.name)
     with (
-        run_folder(request.out) as folder,
+        run_folder(path) as folder,
         open_simulation(request.scenario, folder / "sumo", traffic) as simulation,
     ):
+        write_origin(request, folder)
         run = _Run(request, road_map, simulation, camera, sensors)
-        with _film(request, camera, run, folder):
+        with _film(request, camera, run):
             result = run.complete(on_progress)
         write_result(result, folder)
-    return result, request.out
+    return result, path
 
 
 @contextmanager
-def _film(request: RunRequest, camera: Camera | None, run: "_Run", folder: Path) -> Iterator[None]:
-    """Film what is believed while the block lasts, if that was asked for."""
+def _film(request: RunRequest, camera: Camera | None, run: "_Run") -> Iterator[None]:
+    """Film what is believed while the block lasts, if that was asked for.
+
+    The film is made beside its place, so that it turns out at once if nothing can be written.
+    """
     if request.overlay is None or camera is None:
         yield
         return
-    overlay = Overlay(folder / "overlay.mp4", camera)
+    overlay = Overlay(request.overlay.with_suffix(".partial.mp4"), camera)
     kept: Path | None = None
     try:
         run.show(overlay)

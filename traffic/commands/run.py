@@ -45,7 +45,7 @@ def run(
     ] = None,
 ) -> None:
     """Simulate traffic, watch it, and report what was recognised, scored against the truth."""
-    from traffic.commands.showing import error_console, progress, show_result
+    from traffic.commands.showing import progress, show_result
     from traffic.request import RunRequest
     from traffic.running import run_scenario
 
@@ -67,4 +67,4 @@ def run(
         sys.stdout.write(result.model_dump_json(indent=1) + "\n")
     else:
         show_result(result)
-    error_console().print(f"run written to {folder}", highlight=False)
+    sys.stderr.write(f"run written to {folder}\n")

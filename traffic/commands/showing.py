@@ -13,21 +13,16 @@ from rich.table import Table
 from traffic.maps import MapSummary
 from traffic.results import RecognitionResult, RunResult
 
-__all__ = ["error_console", "progress", "show_network", "show_result"]
+__all__ = ["progress", "show_network", "show_result"]
 
 _VERDICTS = {True: "[green]yes[/]", False: "[red]no[/]", None: "[dim]not in view[/]"}
-
-
-def error_console() -> Console:
-    """Return the console for messages, which is never standard output."""
-    return Console(stderr=True)
 
 
 @contextmanager
 def progress() -> Iterator[Callable[[float, float], None]]:
     """Give a function to call with seconds done and seconds in all, shown on a terminal."""
     columns = (TextColumn("{task.description}"), BarColumn(), TextColumn("{task.fields[at]}"))
-    console = error_console()
+    console = Console(stderr=True)
     with Progress(
         *columns, TimeRemainingColumn(), console=console, disable=not sys.stderr.isatty()
     ) as bar:
@@ -43,7 +38,7 @@ def show_result(result: RunResult) -> None:
     """Print the recognitions, what was missed, the score and the timing as tables."""
     console = Console()
     settings = ", ".join(f"{k} {v}" for k, v in result.settings.items() if v is not None)
-    console.print(f"[bold]{result.scenario}[/]: {settings}", highlight=False)
+    console.print(f"[bold]{escape(result.scenario)}[/]: {escape(settings)}", highlight=False)
     console.print(_recognitions(result))
     if result.missed:
         console.print(_missed(result))
@@ -85,7 +80,7 @@ def _recognitions(result: RunResult) -> Table:
         table.add_row(
             f"{recognition.begin / 1000:.1f}",
             f"{recognition.end / 1000:.1f}",
-            recognition.chronicle.replace("_", " "),
+            escape(recognition.chronicle.replace("_", " ")),
             _who(recognition),
             _where(recognition),
             _VERDICTS[recognition.agrees],
@@ -96,7 +91,7 @@ def _recognitions(result: RunResult) -> Table:
 def _who(recognition: RecognitionResult) -> str:
     truth = recognition.truth or {}
     cars = {k: v for k, v in recognition.arguments.items() if k.startswith("c")}
-    return ", ".join(f"{v} [dim]({truth.get(k, '?')})[/]" for k, v in cars.items())
+    return ", ".join(f"{escape(v)} [dim]({escape(truth.get(k, '?'))})[/]" for k, v in cars.items())
 
 
 def _where(recognition: RecognitionResult) -> str:
@@ -112,8 +107,8 @@ def _missed(result: RunResult) -> Table:
         table.add_row(
             f"{manoeuvre.begin / 1000:.1f}",
             f"{manoeuvre.end / 1000:.1f}",
-            manoeuvre.kind,
-            ", ".join(manoeuvre.vehicles),
+            escape(manoeuvre.kind),
+            escape(", ".join(manoeuvre.vehicles)),
             escape(" → ".join(manoeuvre.place)),
         )
     return table
@@ -126,7 +121,7 @@ def _score(result: RunResult) -> Table:
         counts = (score.truth, score.recognised, score.correct)
         shares = (score.precision, score.recall)
         table.add_row(
-            kind,
+            escape(kind),
             *(str(count) for count in counts),
             *("–" if share is None else f"{share:.3f}" for share in shares),
             str(score.left_out),
@@ -143,5 +138,5 @@ def _timing(result: RunResult) -> Table:
     table = Table("stage", "CPU s", "share", box=SIMPLE_HEAD, title=title)
     total = sum(timing.stages.values()) or 1.0
     for stage, spent in sorted(timing.stages.items(), key=lambda item: -item[1]):
-        table.add_row(stage, f"{spent:.2f}", f"{spent / total:.0%}")
+        table.add_row(escape(stage), f"{spent:.2f}", f"{spent / total:.0%}")
     return table

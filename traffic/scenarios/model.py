@@ -24,8 +24,6 @@ from pydantic import (
     BeforeValidator,
     ConfigDict,
     Field,
-    PositiveFloat,
-    PositiveInt,
     ValidationInfo,
     model_validator,
 )
@@ -56,8 +54,31 @@ def _duration(value: object, info: ValidationInfo) -> object:
 
 
 def _range(value: object) -> object:
-    is_number = isinstance(value, int | float) and not isinstance(value, bool)
-    return (value, value) if is_number else value
+    if _is_number(value):
+        return value, value
+    return _pair(value, "a number, or [smallest, largest]")
+
+
+def _point(value: object) -> object:
+    return value if isinstance(value, str) else _pair(value, "the name of a junction, or [x, y]")
+
+
+def _pair(value: object, expected: str) -> object:
+    match value:
+        case [x, y] if _is_number(x) and _is_number(y):
+            return value
+        case _:
+            raise ValueError(f"expected {expected}, found {value!r}")
+
+
+def _option(value: object) -> object:
+    if isinstance(value, str | bool | int | float):
+        return value
+    raise ValueError(f"expected a text, a number, true or false, found {value!r}")
+
+
+def _is_number(value: object) -> bool:
+    return isinstance(value, int | float) and not isinstance(value, bool)
 
 
 def _ordered(value: tuple[float, float]) -> tuple[float, float]:
@@ -68,12 +89,14 @@ def _ordered(value: tuple[float, float]) -> tuple[float, float]:
 
 _AnyDuration = Annotated[Duration, BeforeValidator(_duration), Field(ge=0)]
 _LongDuration = Annotated[Duration, BeforeValidator(_duration), Field(gt=0)]
-Range = Annotated[tuple[PositiveFloat, PositiveFloat], BeforeValidator(_range)]
-"""A number, or the smallest and the largest of numbers drawn evenly."""
+_Size = Annotated[float, Field(gt=0, le=100)]
+Range = Annotated[tuple[_Size, _Size], BeforeValidator(_range)]
+"""A number, or the smallest and the largest of numbers drawn evenly; at most 100 of any unit."""
 
-_Weight = Annotated[float, Field(ge=0)]
-_TypeWeights = Annotated[dict[str, PositiveFloat], Field(min_length=1)]
-_Option = str | bool | int | float
+_Rate = Annotated[float, Field(gt=0, le=100_000)]
+_Weight = Annotated[float, Field(ge=0, le=1e6)]
+_TypeWeights = Annotated[dict[str, Annotated[float, Field(gt=0, le=1e6)]], Field(min_length=1)]
+_Option = Annotated[str | bool | int | float, BeforeValidator(_option)]
 
 
 class Settings(BaseModel):
@@ -94,8 +117,8 @@ class CameraSettings(Settings):
         height: Of the image, pixels.
     """
 
-    look_at: str | tuple[float, float]
-    altitude: PositiveFloat = 120.0
+    look_at: Annotated[str | tuple[float, float], BeforeValidator(_point)]
+    altitude: Annotated[float, Field(gt=0, le=10_000)] = 120.0
     field_of_view: Annotated[float, Field(gt=0, lt=170)] = 67.0
     heading: float = 0.0
     width: Annotated[int, Field(ge=16, le=8192)] = 1280
@@ -145,7 +168,7 @@ class Flow(Settings):
     """
 
     route: Annotated[tuple[str, ...], Field(min_length=1)]
-    rate_per_hour: PositiveFloat
+    rate_per_hour: _Rate
     types: _TypeWeights
 
 
@@ -158,7 +181,7 @@ class Trips(Settings):
         min_distance: Between the two roads as the crow flies, metres.
     """
 
-    rate_per_hour: PositiveFloat
+    rate_per_hour: _Rate
     types: _TypeWeights
     min_distance: Annotated[float, Field(ge=0)] = 0.0
 
@@ -181,7 +204,7 @@ class Circulation(Settings):
         turns: How much drivers favour each way out of a junction.
     """
 
-    vehicles: PositiveInt
+    vehicles: Annotated[int, Field(ge=1, le=100_000)]
     types: _TypeWeights
     turns: TurnShares = TurnShares()
 

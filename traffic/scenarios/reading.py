@@ -1,7 +1,10 @@
 """Finds and reads scenarios, and says everything that is wrong with one, with its place."""
 
+import gzip
+import html
 import re
 import tomllib
+import zlib
 from collections.abc import Iterable, Iterator, Mapping
 from pathlib import Path
 from typing import Any
@@ -31,6 +34,16 @@ __all__ = [
     "read_scenario",
     "scenario_of_configuration",
 ]
+
+_EXPECTED = {
+    "dict_type": "a table",
+    "model_type": "a table",
+    "path_type": "a text",
+    "string_pattern_mismatch": "a name of letters, digits and '_'",
+    "string_type": "a text",
+    "tuple_type": "an array",
+}
+_GZIP = b"\x1f\x8b"
 
 
 def bundled_scenarios() -> tuple[Scenario, ...]:
@@ -110,10 +123,11 @@ def _read_toml(source: SourceText) -> dict[str, Any]:
         text = str(error)
         at = re.search(r" \(at (?:line (\d+), column (\d+)|end of document)\)$", text)
         end = source.place(len(source.text))
-        line, column = (at[1], at[2]) if at and at[1] else end
+        line, column = (int(at[1]), int(at[2])) if at and at[1] else end
         fault = text[: at.start()] if at else text
         place = f"{source.name}:{line}:{column}"
-        raise ScenarioError(f"{place}: {fault[0].lower()}{fault[1:]}") from error
+        excerpt = f"{source.line(line)}\n{' ' * (column - 1)}^"
+        raise ScenarioError(f"{place}: {fault[0].lower()}{fault[1:]}\n{excerpt}") from error
 
 
 def _faults(found: Iterable[tuple[str, KeyPath]], source: SourceText) -> list[str]:
@@ -140,7 +154,8 @@ def _message(detail: ErrorDetails) -> str:
         case "value_error":
             return detail["msg"].removeprefix("Value error, ")
         case _:
-            expected = detail["msg"].removeprefix("Input should be ").split(", unable")[0]
+            said = detail["msg"].removeprefix("Input should be ").split(", unable")[0]
+            expected = _EXPECTED.get(detail["type"], said)
             return f"expected {expected}, found {detail['input']!r}"
 
 
@@ -162,6 +177,9 @@ def _known_keys(path: KeyPath) -> list[str]:
 def _misplaced_names(scenario: Scenario) -> Iterator[tuple[str, KeyPath]]:
     """Yield each name of the scenario that stands for nothing, with its path."""
     known = [vehicle_type.name for vehicle_type in scenario.vehicle_types]
+    for i, name in enumerate(known):
+        if name in known[:i]:
+            yield f"there is a vehicle type '{name}' already", ("vehicle_types", i, "name")
     for kind in ("flows", "trips", "circulations"):
         for i, demand in enumerate(getattr(scenario, kind)):
             for name in demand.types:
@@ -180,21 +198,36 @@ def _misplaced_files(scenario: Scenario) -> Iterator[tuple[str, KeyPath]]:
         name = scenario.network.name
         yield f"{_unknown('network', name, networks)} (no file '{scenario.network}')", ("network",)
         return
-    yield from _misplaced_roads(scenario, scenario.network)
+    try:
+        text = _network_text(scenario.network)
+    except (OSError, EOFError, zlib.error) as error:
+        yield f"cannot read '{scenario.network}': {error}", ("network",)
+    else:
+        yield from _misplaced_roads(scenario, text)
 
 
-def _misplaced_roads(scenario: Scenario, network: Path) -> Iterator[tuple[str, KeyPath]]:
-    text = network.read_text(encoding="utf-8", errors="replace")
-    roads = re.findall(r'<edge id="([^":][^"]*)"', text)
+def _network_text(path: Path) -> str:
+    raw = path.read_bytes()
+    return (gzip.decompress(raw) if raw.startswith(_GZIP) else raw).decode(errors="replace")
+
+
+def _misplaced_roads(scenario: Scenario, network: str) -> Iterator[tuple[str, KeyPath]]:
+    """Yield the names that are not in the text of the network, which may be broken."""
+    roads = _ids("edge", network)
     for i, flow in enumerate(scenario.flows):
         for name in flow.route:
             if name not in roads:
                 yield _unknown("road", name, roads), ("flows", i, "route")
     camera = scenario.camera
     if camera is not None and isinstance(camera.look_at, str):
-        junctions = re.findall(r'<junction id="([^":][^"]*)"', text)
+        junctions = _ids("junction", network)
         if camera.look_at not in junctions:
             yield _unknown("junction", camera.look_at, junctions), ("camera", "look_at")
+
+
+def _ids(tag: str, network: str) -> list[str]:
+    found = re.findall(rf"""<{tag}\s(?:[^>]*?\s)?id=(?:"([^":][^"]*)"|'([^':][^']*)')""", network)
+    return [html.unescape(double or single) for double, single in found]
 
 
 def _unknown(kind: str, name: str, known: list[str]) -> str:

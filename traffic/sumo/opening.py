@@ -70,7 +70,7 @@ def network_of(scenario: Scenario) -> Path:
     if scenario.sumocfg is None:
         raise SimulatorError(f"the scenario '{scenario.name}' names no network")
     options = read_options(scenario.sumocfg)
-    if "net-file" not in options:
+    if not options.get("net-file"):
         raise SimulatorError(f"the SUMO configuration '{scenario.sumocfg}' names no 'net-file'")
     return scenario.sumocfg.parent / options["net-file"]
 
