@@ -25,6 +25,7 @@ from anchoring.links import LinkSettings, LinkUnit
 from anchoring.rows import Mask, Rows, take, with_rows
 from anchoring.structures import LinkHistory
 from dyknow.mtl.monitors import MonitorColumns
+from dyknow.streams.process import Reactive
 from dyknow.streams.sample import Sample
 from dyknow.streams.table import Ids, Table, concatenate, positions_of
 from dyknow.time import TimePoint
@@ -35,7 +36,7 @@ _LINKED = -1
 """As `since` of an upper object: it is linked."""
 
 
-class LinkProcess:
+class LinkProcess(Reactive):
     """A computational unit from tables of lower objects to tables of upper objects.
 
     For each sample that arrives a sample with the states of all upper objects is emitted, valid
@@ -71,15 +72,6 @@ class LinkProcess:
         self._time = sample.valid_time
         self._take_in(sample.value, sample.valid_time)
         return (Sample(self._unit.published(self._uppers.table), sample.valid_time, now),)
-
-    def advance(self, now: TimePoint) -> Iterable[Sample[Table]]:
-        """Return nothing: a link process speaks when a sample arrives."""
-        del now
-        return ()
-
-    def due(self) -> TimePoint | None:
-        """Return None: a link process speaks when a sample arrives."""
-        return None
 
     def _take_in(self, lower: Table, now: TimePoint) -> None:
         self._step += 1

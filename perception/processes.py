@@ -5,6 +5,7 @@ from typing import Any
 
 import numpy as np
 
+from dyknow.streams.process import Reactive
 from dyknow.streams.sample import NO_VALUE, Sample
 from dyknow.streams.table import Table
 from dyknow.time import TimePoint
@@ -24,7 +25,7 @@ def make_painter(
     return GroundPainter(ground, surroundings, make_texture(generator))
 
 
-class _CameraUnit:
+class _CameraUnit(Reactive):
     """Turns each sample of vehicles into an image with the same valid time."""
 
     def __init__(self, renderer: ColourRenderer | ThermalRenderer) -> None:
@@ -43,14 +44,6 @@ class _CameraUnit:
         image = self._renderer.render(vehicles_from_table(vehicles.value), camera)
         return (Sample(image, vehicles.valid_time, now),)
 
-    def advance(self, now: TimePoint) -> Iterable[Sample[Image]]:  # noqa: ARG002
-        """Emit nothing: images come with vehicles only."""
-        return ()
-
-    def due(self) -> TimePoint | None:
-        """Return None: nothing falls due without input."""
-        return None
-
 
 class ColourCamera(_CameraUnit):
     """The unit `ColourCamera(vehicles, camera_pose)`: images (h, w, 3), blue, green, red."""
@@ -66,7 +59,7 @@ class ThermalCamera(_CameraUnit):
         super().__init__(ThermalRenderer(painter, generator))
 
 
-class VisionPercepts:
+class VisionPercepts(Reactive):
     """The unit `VisionPercepts(images, camera_pose)`: what the images show, of sort `percept`.
 
     The first input is a stream of states: tuples of a colour and a thermal image of one valid
@@ -91,14 +84,6 @@ class VisionPercepts:
         colour, thermal = (None if image is NO_VALUE else image for image in images.value)
         percepts = self._pipeline.perceive(images.valid_time, colour, thermal, pose.value)
         return (Sample(_table(percepts, images.valid_time), images.valid_time, now),)
-
-    def advance(self, now: TimePoint) -> Iterable[Sample[Table]]:  # noqa: ARG002
-        """Emit nothing: percepts come with images only."""
-        return ()
-
-    def due(self) -> TimePoint | None:
-        """Return None: nothing falls due without input."""
-        return None
 
 
 def vehicles_from_table(table: Table) -> Vehicles:

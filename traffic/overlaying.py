@@ -19,7 +19,6 @@ __all__ = ["Overlay"]
 Image = npt.NDArray[np.uint8]
 Points = npt.NDArray[np.float64]
 
-_SIZE = (1920, 540)
 _FRAMES_PER_SECOND = 25.0
 _TRAIL_TABLES = 30
 _CAPTION_LASTS = 6 * SECOND
@@ -44,7 +43,9 @@ class Overlay:
 
     def __init__(self, working: Path, camera: Camera) -> None:
         self._camera = camera
-        self._film = FilmWriter(working, _SIZE, frames_per_second=_FRAMES_PER_SECOND)
+        width, height = camera.size
+        size = (2 * width, height)
+        self._film = FilmWriter(working, size, frames_per_second=_FRAMES_PER_SECOND)
         self._working = working
         self._colour: Sample[Image] | None = None
         self._cars: Sample[Table] | None = None

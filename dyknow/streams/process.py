@@ -10,7 +10,7 @@ from typing import Any, Protocol
 from dyknow.streams.sample import Sample
 from dyknow.time import TimePoint
 
-__all__ = ["ComputationalUnit", "Source"]
+__all__ = ["ComputationalUnit", "Reactive", "Source"]
 
 
 class Source(Protocol):
@@ -40,3 +40,15 @@ class ComputationalUnit(Protocol):
 
     def due(self) -> TimePoint | None:
         """Return when the unit next has something to say without new input, if ever."""
+
+
+class Reactive:
+    """What units have in common that speak only when a sample arrives."""
+
+    def advance(self, now: TimePoint) -> Iterable[Sample[Any]]:  # noqa: ARG002, the protocol's
+        """Emit nothing: time alone changes nothing."""
+        return ()
+
+    def due(self) -> TimePoint | None:
+        """Never: the unit only answers to input."""
+        return None

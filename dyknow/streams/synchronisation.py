@@ -10,13 +10,14 @@ from collections.abc import Sequence
 from typing import Any
 
 from dyknow.streams.policy import Constraint, Violation
+from dyknow.streams.process import Reactive
 from dyknow.streams.sample import Sample
 from dyknow.time import TimePoint, text_from_duration
 
 __all__ = ["Synchronisation"]
 
 
-class Synchronisation:
+class Synchronisation(Reactive):
     """A computational unit that makes a state when every input has a sample of its valid time.
 
     The value of a state is the tuple of the inputs' values. Inputs must be in monotone order;
@@ -45,13 +46,6 @@ class Synchronisation:
         times = sorted(time for time in self._pending if time <= settled)
         states = [self._settle(time, now) for time in times]
         return [state for state in states if state is not None]
-
-    def advance(self, now: TimePoint) -> list[Sample[Any]]:  # noqa: ARG002 (protocol)
-        """Yield nothing: time alone completes no state."""
-        return []
-
-    def due(self) -> None:
-        """Return None: there are no deadlines."""
 
     def take_violations(self) -> list[Violation]:
         """Return the violations noticed since this was last asked."""

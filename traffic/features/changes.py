@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from chronicles.events import Event
+from dyknow.streams.process import Reactive
 from dyknow.streams.sample import Sample
 from dyknow.streams.table import Column, Table, positions_of
 from dyknow.time import TimePoint
@@ -20,7 +21,7 @@ _NONE = -1
 _ARGUMENTS = ("first", "second")
 
 
-class Changes:
+class Changes(Reactive):
     """Emits the changes of attributes from one table to the next, as a tuple of events.
 
     One tuple comes out for each table that goes in, also an empty one: it says that nothing
@@ -53,14 +54,6 @@ class Changes:
         events = tuple(self._events(sample.value, sample.valid_time))
         self._last = sample.value
         yield Sample(events, sample.valid_time, now)
-
-    def advance(self, now: TimePoint) -> Iterable[Sample[tuple[Event, ...]]]:  # noqa: ARG002
-        """Emit nothing: changes are found when a table arrives."""
-        return ()
-
-    def due(self) -> TimePoint | None:
-        """Never: the unit only answers to input."""
-        return None
 
     def _events(self, table: Table, time: TimePoint) -> Iterator[Event]:
         last = self._last

@@ -5,6 +5,7 @@ from typing import Any
 
 import numpy as np
 
+from dyknow.streams.process import Reactive
 from dyknow.streams.sample import Sample
 from dyknow.streams.table import Table
 from dyknow.time import TimePoint
@@ -13,7 +14,7 @@ from traffic.features.carrying import CarriedColumns
 __all__ = ["Moving"]
 
 
-class Moving:
+class Moving(Reactive):
     """Adds the column `moving` to a stream of tables with a column `speed`.
 
     One table comes out for each table that goes in, with the same times. A car begins to move
@@ -41,11 +42,3 @@ class Moving:
         moving = (speed > self._above) | (self._state["moving"] & (speed >= self._below))
         self._state["moving"] = moving
         yield Sample(table.with_columns(moving=moving), sample.valid_time, now)
-
-    def advance(self, now: TimePoint) -> Iterable[Sample[Table]]:  # noqa: ARG002
-        """Emit nothing: time alone moves no car."""
-        return ()
-
-    def due(self) -> TimePoint | None:
-        """Never: the unit only answers to input."""
-        return None

@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from dyknow.streams.process import Reactive
 from dyknow.streams.sample import Sample
 from dyknow.streams.table import Table
 from dyknow.time import Duration, TimePoint
@@ -54,7 +55,7 @@ def near_pairs_along(
     return order[behind], order[ahead]
 
 
-class NearPairs:
+class NearPairs(Reactive):
     """Pairs of active cars on roads of one link in one direction, at most *distance* apart.
 
     For each table of cars one table of pairs comes out, both orders of each pair: columns
@@ -79,14 +80,6 @@ class NearPairs:
         cars: Table = sample.value
         is_active = sample.valid_time - cars["observed_at"] <= self._active_for
         yield Sample(self._pairs(cars.select(is_active)), sample.valid_time, now)
-
-    def advance(self, now: TimePoint) -> Iterable[Sample[Table]]:  # noqa: ARG002
-        """Emit nothing: pairs follow from tables of cars."""
-        return ()
-
-    def due(self) -> TimePoint | None:
-        """Never: the unit only answers to input."""
-        return None
 
     def _pairs(self, cars: Table) -> Table:
         direction, link = cars["direction_in_link"], cars["link_of_road"].astype(np.int64)

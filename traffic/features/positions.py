@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 
+from dyknow.streams.process import Reactive
 from dyknow.streams.sample import Sample
 from dyknow.streams.table import Table
 from dyknow.time import TimePoint
@@ -19,7 +20,7 @@ _LEAST_VARIANCE = 0.05**2
 _AIR_TEMPERATURE = 20.0
 
 
-class NoisyPositions:
+class NoisyPositions(Reactive):
     """Turns the vehicles of the simulator into vision percepts with inexact positions.
 
     One table of percepts comes out for each table of vehicles. The error is uniform within
@@ -54,11 +55,3 @@ class NoisyPositions:
             "observed_at": np.full(n, sample.valid_time, dtype=np.int64),
         }
         yield Sample(Table("percept", vehicles.ids, columns), sample.valid_time, now)
-
-    def advance(self, now: TimePoint) -> Iterable[Sample[Table]]:  # noqa: ARG002
-        """Emit nothing: percepts follow from vehicles."""
-        return ()
-
-    def due(self) -> TimePoint | None:
-        """Never: the unit only answers to input."""
-        return None

@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from dyknow.streams.process import Reactive
 from dyknow.streams.sample import Sample
 from dyknow.streams.table import Table
 from dyknow.time import TimePoint
@@ -23,7 +24,7 @@ RELATIONS = ("behind", "in_front", "left", "right", "beside", "close")
 Floats = npt.NDArray[np.float64]
 
 
-class CarRelations:
+class CarRelations(Reactive):
     """Computes the qualitative relations of each pair of cars; one table out for each one in.
 
     For a pair (first, second), with the gap between bumpers along the road:
@@ -67,14 +68,6 @@ class CarRelations:
         relations = {name: state[name] for name in RELATIONS}
         columns = {"first": pairs["first"], "second": pairs["second"], **relations}
         yield Sample(Table("car_relation", pairs.ids, columns), sample.valid_time, now)
-
-    def advance(self, now: TimePoint) -> Iterable[Sample[Table]]:  # noqa: ARG002
-        """Emit nothing: relations follow from pairs."""
-        return ()
-
-    def due(self) -> TimePoint | None:
-        """Never: the unit only answers to input."""
-        return None
 
     def _hold(self, name: str, value: Floats, enter: float | Floats, stay: float) -> None:
         self._state[name] = (value >= enter) | (self._state[name] & (value >= stay))

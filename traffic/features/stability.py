@@ -11,6 +11,7 @@ from typing import Any
 
 import numpy as np
 
+from dyknow.streams.process import Reactive
 from dyknow.streams.sample import Sample
 from dyknow.streams.table import Column, Table
 from dyknow.time import Duration, TimePoint
@@ -22,7 +23,7 @@ UNKNOWN = -2
 """The value of an attribute that has not been stable since its object appeared."""
 
 
-class StableFor:
+class StableFor(Reactive):
     """Holds back the changes of some columns until they have been stable for *duration*.
 
     For each table that goes in, one comes out that is valid *duration* earlier and holds, for
@@ -65,14 +66,6 @@ class StableFor:
         kept = {name: table[name] for name in self._keep}
         valid_time = TimePoint(sample.valid_time - self._duration)
         yield Sample(Table(table.sort, table.ids, {**stable, **kept}), valid_time, now)
-
-    def advance(self, now: TimePoint) -> Iterable[Sample[Table]]:  # noqa: ARG002
-        """Emit nothing: stability is judged when a table arrives."""
-        return ()
-
-    def due(self) -> TimePoint | None:
-        """Never: the unit only answers to input."""
-        return None
 
     def _stabilise(
         self, name: str, values: Column, observed: Column, valid_time: TimePoint
