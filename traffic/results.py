@@ -26,7 +26,6 @@ __all__ = [
 ]
 
 _RESULT_FILE = "result.json"
-_PARTIAL = ".partial"
 
 
 class _Value(BaseModel):
@@ -142,16 +141,8 @@ def run_folder(path: Path) -> Iterator[Path]:
     Raises:
         ResultError: *path* exists already or cannot be made, or another run is to become it.
     """
-    partial = path.with_name(f"{path.name}{_PARTIAL}")
     try:
-        if path.exists():
-            raise ResultError(f"'{path}' exists already; a run never changes what is there")
-        partial.mkdir(parents=True)
-    except FileExistsError as error:
-        raise ResultError(
-            f"'{partial}' exists: a run is writing there, or was killed and left it; "
-            "choose another folder, or remove that one"
-        ) from error
+        partial = _reserve(path)
     except OSError as error:
         raise ResultError(f"cannot write to '{path}': {error.strerror}") from error
     try:
@@ -164,9 +155,7 @@ def run_folder(path: Path) -> Iterator[Path]:
 def new_folder(name: str) -> Path:
     """Return the first of `runs/NAME-0001`, `runs/NAME-0002`, … that no run has or is writing."""
     number = 1
-    while (path := Path("runs") / f"{name}-{number:04d}").exists() or (
-        path.with_name(f"{path.name}{_PARTIAL}").exists()
-    ):
+    while (path := Path("runs") / f"{name}-{number:04d}").exists() or _partial(path).exists():
         number += 1
     return path
 
@@ -189,6 +178,24 @@ def read_result(folder: Path) -> RunResult:
         raise ResultError(f"'{folder}' holds no finished run: {error.strerror}") from error
     except (ValidationError, UnicodeDecodeError) as error:
         raise ResultError(f"'{path}' is not the result of a run: {_first_fault(error)}") from error
+
+
+def _partial(path: Path) -> Path:
+    return path.with_name(f"{path.name}.partial")
+
+
+def _reserve(path: Path) -> Path:
+    if path.exists():
+        raise ResultError(f"'{path}' exists already; a run never changes what is there")
+    partial = _partial(path)
+    try:
+        partial.mkdir(parents=True)
+    except FileExistsError as error:
+        raise ResultError(
+            f"'{partial}' exists: a run is writing there, or was killed and left it; "
+            "choose another folder, or remove that one"
+        ) from error
+    return partial
 
 
 def _rename(partial: Path, path: Path) -> None:
