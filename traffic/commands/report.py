@@ -1,4 +1,4 @@
-"""`traffic report`: show a finished run again."""
+"""`traffic report`: show finished runs again."""
 
 import sys
 from pathlib import Path
@@ -10,18 +10,26 @@ __all__ = ["report"]
 
 
 def report(
-    run: Annotated[Path, typer.Argument(help="Folder that 'traffic run' wrote.")],
+    runs: Annotated[list[Path], typer.Argument(help="Folders that 'traffic run' wrote.")],
     *,
     json: Annotated[
         bool, typer.Option("--json", help="Print one JSON document instead of tables.")
     ] = False,
 ) -> None:
-    """Show what a run recognised, against the truth; runs nothing."""
-    from traffic.commands.showing import show_result
-    from traffic.results import read_result
+    """Show what a run recognised, against the truth, or the scores of several; runs nothing."""
+    from pydantic_core import to_json
 
-    result = read_result(run)
+    from traffic.commands.showing import show_result, show_scores
+    from traffic.results import read_result
+    from traffic.totals import total_score
+
+    results = [read_result(run) for run in runs]
+    total = total_score(results)
     if json:
-        sys.stdout.write(result.model_dump_json(indent=1) + "\n")
+        document = results[0] if len(results) == 1 else {"runs": results, "score": total}
+        sys.stdout.write(to_json(document, indent=1).decode() + "\n")
+    elif len(results) == 1:
+        show_result(results[0])
     else:
-        show_result(result)
+        show_scores({str(run): result.score for run, result in zip(runs, results, strict=True)})
+        show_scores({"all together": total})

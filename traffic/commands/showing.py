@@ -1,7 +1,7 @@
 """Tables and progress bars that the commands share."""
 
 import sys
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 
 from rich.box import SIMPLE_HEAD
@@ -11,9 +11,9 @@ from rich.progress import BarColumn, Progress, TextColumn, TimeRemainingColumn
 from rich.table import Table
 
 from traffic.maps import MapSummary
-from traffic.results import RecognitionResult, RunResult
+from traffic.results import RecognitionResult, RunResult, Score
 
-__all__ = ["progress", "show_network", "show_result"]
+__all__ = ["progress", "show_network", "show_result", "show_scores"]
 
 _VERDICTS = {True: "[green]yes[/]", False: "[red]no[/]", None: "[dim]not in view[/]"}
 
@@ -42,8 +42,13 @@ def show_result(result: RunResult) -> None:
     console.print(_recognitions(result))
     if result.missed:
         console.print(_missed(result))
-    console.print(_score(result))
+    console.print(_scores({"": result.score}))
     console.print(_timing(result))
+
+
+def show_scores(score_by_run: Mapping[str, Mapping[str, Score]]) -> None:
+    """Print the scores of several runs as one table."""
+    Console().print(_scores(score_by_run))
 
 
 def show_network(summary: MapSummary) -> None:
@@ -114,19 +119,19 @@ def _missed(result: RunResult) -> Table:
     return table
 
 
-def _score(result: RunResult) -> Table:
-    headings = ("", "true", "recognised", "correct", "precision", "recall", "not wholly in view")
-    table = Table(*headings, box=SIMPLE_HEAD, title="Score")
-    for kind, score in result.score.items():
-        counts = (score.truth, score.recognised, score.correct)
-        shares = (score.precision, score.recall)
-        table.add_row(
-            escape(kind),
-            *(str(count) for count in counts),
-            *("–" if share is None else f"{share:.3f}" for share in shares),
-            str(score.left_out),
-        )
+def _scores(score_by_run: Mapping[str, Mapping[str, Score]]) -> Table:
+    counts = ("true", "recognised", "correct", "precision", "recall", "not wholly in view")
+    table = Table("", "", *counts, box=SIMPLE_HEAD, title="Score")
+    for run, score_by_kind in score_by_run.items():
+        for kind, score in score_by_kind.items():
+            table.add_row(escape(run), kind, *_row(score))
     return table
+
+
+def _row(score: Score) -> list[str]:
+    shares = ["–" if s is None else f"{s:.3f}" for s in (score.precision, score.recall)]
+    counts = [str(count) for count in (score.truth, score.recognised, score.correct)]
+    return [*counts, *shares, str(score.left_out)]
 
 
 def _timing(result: RunResult) -> Table:
