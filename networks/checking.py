@@ -8,6 +8,7 @@ not tell.
 
 import gzip
 import math
+import zlib
 from dataclasses import dataclass
 from pathlib import Path
 from typing import IO
@@ -56,7 +57,7 @@ def check_network_file(path: Path) -> NetworkFile:
             check.run(source)
     except FileNotFoundError as fault:
         raise NetworkFileError(path, "no such file") from fault
-    except (OSError, EOFError) as fault:
+    except (OSError, EOFError, zlib.error) as fault:
         reason = fault.strerror if isinstance(fault, OSError) and fault.strerror else str(fault)
         raise NetworkFileError(path, f"cannot be read: {reason}") from fault
     return NetworkFile(check.left_hand)
@@ -83,6 +84,8 @@ class _Check:
         except expat.ExpatError as fault:
             place = (fault.lineno, fault.offset + 1)
             raise self._fault(f"broken XML: {expat.ErrorString(fault.code)}", place) from fault
+        except (LookupError, ValueError) as fault:  # what the XML says of its encoding
+            raise self._fault(f"broken XML: {fault}", (1, 1)) from fault
         for junction, (edge, place) in self._junctions_wanted.items():
             if junction not in self._junctions:
                 raise self._fault(

@@ -11,6 +11,7 @@ import gzip
 import os
 import re
 import xml.etree.ElementTree as ET
+import zlib
 from collections.abc import Iterable, Mapping
 from pathlib import Path, PurePosixPath
 
@@ -188,8 +189,9 @@ def _contents(path: Path) -> bytes:
     try:
         raw = path.read_bytes()
         return gzip.decompress(raw) if raw.startswith(b"\x1f\x8b") else raw
-    except OSError as error:
-        raise SimulatorError(f"cannot read '{path}': {error.strerror or error}") from error
+    except (OSError, EOFError, zlib.error) as error:
+        reason = error.strerror if isinstance(error, OSError) and error.strerror else error
+        raise SimulatorError(f"cannot read '{path}': {reason}") from error
 
 
 def _parse(path: Path) -> ET.Element:
@@ -201,6 +203,8 @@ def _parse(path: Path) -> ET.Element:
         raise SimulatorError(
             f"{path}:{line}:{column + 1}: not well-formed XML: {fault}"
         ) from error
+    except (LookupError, ValueError) as error:  # what the XML says of its encoding
+        raise SimulatorError(f"{path}:1:1: not well-formed XML: {error}") from error
 
 
 def _write(root: ET.Element, path: Path) -> None:
