@@ -1,8 +1,8 @@
 """How vehicles move: Kalman filters over columns, for all objects at once.
 
 Two models. In the plane, an object keeps its velocity up to white noise in its acceleration. Along
-one axis (along a road, or across it), it is in one of several *manoeuvres* and goes from one to
-another at known rates; this is the interacting multiple model filter of Blom and Bar-Shalom
+one axis (along a road, or across it), it is in one of several *modes* of motion and goes from one
+to another at known rates; this is the interacting multiple model filter of Blom and Bar-Shalom
 (1988), 'The interacting multiple model algorithm for systems with Markovian switching
 coefficients'. It is smooth while a vehicle cruises and quick when it brakes or changes lanes,
 which no single constant-velocity filter is under noise of several metres.
@@ -22,8 +22,8 @@ __all__ = [
     "ALONG_A_ROAD",
     "AxisState",
     "Floats",
-    "Manoeuvre",
-    "Manoeuvres",
+    "MotionMode",
+    "MotionModes",
     "predict_in_plane",
     "update_in_plane",
 ]
@@ -35,10 +35,10 @@ _UNIT_NOISE: Floats = Q_continuous_white_noise(dim=2, dt=1.0, spectral_density=1
 in t seconds the entries grow with t³, t² and t."""
 
 _LONGEST_SWITCH = 1.0
-"""Seconds up to which the probability of changing the manoeuvre is linear in time."""
+"""Seconds up to which the probability of changing the mode is linear in time."""
 
 _LEAST = 1e-12
-"""No manoeuvre ever becomes impossible."""
+"""No mode ever becomes impossible."""
 
 
 def predict_in_plane(
@@ -95,7 +95,7 @@ def _blocks(covariance: Floats) -> tuple[Floats, Floats, Floats]:
 
 
 @dataclass(frozen=True, slots=True)
-class Manoeuvre:
+class MotionMode:
     """One way of moving along an axis.
 
     Attributes:
@@ -113,12 +113,12 @@ class Manoeuvre:
 
 @dataclass(frozen=True, slots=True)
 class AxisState:
-    """What is believed about positions and velocities along one axis, for each manoeuvre.
+    """What is believed about positions and velocities along one axis, for each mode.
 
     Attributes:
-        mean: shape (n, m, 2), position and velocity under each of m manoeuvres.
+        mean: shape (n, m, 2), position and velocity under each of m modes.
         covariance: shape (n, m, 3), variance of position, covariance, variance of velocity.
-        weight: shape (n, m), probability of each manoeuvre.
+        weight: shape (n, m), probability of each mode.
     """
 
     mean: Floats
@@ -126,28 +126,28 @@ class AxisState:
     weight: Floats
 
     def expected(self) -> Floats:
-        """Return position and velocity over all manoeuvres, shape (n, 2)."""
+        """Return position and velocity over all modes, shape (n, 2)."""
         expected: Floats = (self.weight[:, None, :] @ self.mean)[:, 0, :]
         return expected
 
     def estimate(self) -> tuple[Floats, Floats]:
-        """Return mean (n, 2) and covariance (n, 3) over all manoeuvres."""
+        """Return mean (n, 2) and covariance (n, 3) over all modes."""
         mean = self.expected()
         moments = self.covariance + _products(self.mean - mean[:, None, :])
         return mean, (self.weight[:, None, :] @ moments)[:, 0, :]
 
 
 @dataclass(frozen=True)
-class Manoeuvres:
+class MotionModes:
     """The ways of moving along an axis, and how often one turns into another.
 
     Attributes:
-        kinds: The manoeuvres; the first is the usual one.
-        rates: `rates[i][j]` is how often per second manoeuvre i turns into j; the diagonal is
+        kinds: The modes; the first is the usual one.
+        rates: `rates[i][j]` is how often per second mode i turns into j; the diagonal is
             ignored.
     """
 
-    kinds: tuple[Manoeuvre, ...]
+    kinds: tuple[MotionMode, ...]
     rates: tuple[tuple[float, ...], ...]
 
     def start(self, mean: Floats, covariance: Floats) -> AxisState:
@@ -216,7 +216,7 @@ class Manoeuvres:
         ), best + np.log(total)
 
     def _mix(self, state: AxisState, elapsed: Floats) -> AxisState:
-        """Let each manoeuvre take over from the others, each with its share."""
+        """Let each mode take over from the others, each with its share."""
         step = np.minimum(elapsed, _LONGEST_SWITCH)[:, None, None]
         share = state.weight[:, :, None] * (self._identity + step * self._generator)
         weight = share.sum(axis=1)
@@ -269,12 +269,12 @@ def _products(pairs: Floats) -> Floats:
     return np.stack((a * a, a * b, b * b), axis=-1)
 
 
-ALONG_A_ROAD = Manoeuvres(
+ALONG_A_ROAD = MotionModes(
     kinds=(
-        Manoeuvre(density=0.02),
-        Manoeuvre(density=0.3, acceleration=2.0),
-        Manoeuvre(density=1.0, acceleration=-3.5),
-        Manoeuvre(density=0.005, damping=3.0),
+        MotionMode(density=0.02),
+        MotionMode(density=0.3, acceleration=2.0),
+        MotionMode(density=1.0, acceleration=-3.5),
+        MotionMode(density=0.005, damping=3.0),
     ),
     rates=(
         (0.0, 0.03, 0.03, 0.0),
@@ -285,11 +285,11 @@ ALONG_A_ROAD = Manoeuvres(
 )
 """Cruising, accelerating, braking, and standing."""
 
-ACROSS_A_ROAD = Manoeuvres(
+ACROSS_A_ROAD = MotionModes(
     kinds=(
-        Manoeuvre(density=0.0005, damping=5.0),
-        Manoeuvre(density=0.3, damping=3.3, drift=1.28),
-        Manoeuvre(density=0.3, damping=3.3, drift=-1.28),
+        MotionMode(density=0.0005, damping=5.0),
+        MotionMode(density=0.3, damping=3.3, drift=1.28),
+        MotionMode(density=0.3, damping=3.3, drift=-1.28),
     ),
     rates=((0.0, 0.05, 0.05), (0.3, 0.0, 0.0), (0.3, 0.0, 0.0)),
 )

@@ -7,7 +7,7 @@ one or in steps of a common divisor of all times; here whole intervals are taken
 is exact for any times. Therefore a residual is kept not as a formula but as what a formula
 would say:
 
-- for each operator `until` at the top level (an *anchor*), the instants that can still be its
+- for each operator `until` at the top level (an *obligation*), the instants that can still be its
   witness; those at which the right side is known to be false are gone;
 - for each node below, the past instants at which it is known to be true or known to be false,
   as far as an undecided operator above still asks for them.
@@ -48,7 +48,7 @@ from dyknow.mtl.instants import (
 from dyknow.mtl.syntax import Verdict
 from dyknow.time import Duration
 
-__all__ = ["Anchor", "Knowledge", "Progression", "Residual"]
+__all__ = ["Knowledge", "Obligation", "Progression", "Residual"]
 
 _NOW: Instants = (0, 1)
 
@@ -85,7 +85,7 @@ _NOTHING = Knowledge()
 
 
 @dataclass(frozen=True, slots=True)
-class Anchor:
+class Obligation:
     """An undecided operator at the top level.
 
     Attributes:
@@ -97,8 +97,8 @@ class Anchor:
     left_from: int
 
 
-_AnchorState = Anchor | Verdict
-"""An anchor, or what has been decided; `UNDECIDED` where the others decide without it."""
+_ObligationState = Obligation | Verdict
+"""An obligation, or what has been decided; `UNDECIDED` where the others decide without it."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -106,12 +106,12 @@ class Residual:
     """What is left of a formula.
 
     Attributes:
-        anchors: For each operator or state formula at the top level, its state.
+        obligations: For each operator or state formula at the top level, its state.
         knowledge: For each node of the graph, what is known and still asked for.
         held: For each node of the graph, whether it is a state formula that holds now.
     """
 
-    anchors: tuple[_AnchorState, ...]
+    obligations: tuple[_ObligationState, ...]
     knowledge: tuple[Knowledge, ...]
     held: tuple[bool, ...]
 
@@ -120,15 +120,15 @@ class Progression:
     """How the residuals of one formula follow from one another.
 
     Attributes:
-        anchored: The operators and state formulas at the top level, as positive literals.
+        owed: The operators and state formulas at the top level, as positive literals.
     """
 
     def __init__(self, graph: FormulaGraph) -> None:
         self._graph = graph
         self._nodes = list(enumerate(graph.nodes))
-        self.anchored = tuple(dict.fromkeys(self._top_level(graph.root)))
+        self.owed = tuple(dict.fromkeys(self._top_level(graph.root)))
         self._longest = sum(2 + _finite_bounds(node) for node in graph.nodes)
-        self._place = {literal: at for at, literal in enumerate(self.anchored)}
+        self._place = {literal: at for at, literal in enumerate(self.owed)}
 
     def _top_level(self, literal: Literal) -> Iterator[Literal]:
         """Yield the nodes that say something about the first instant, as positive literals."""
@@ -143,15 +143,15 @@ class Progression:
     def first(self, bits: int) -> Residual:
         """Return what is left after the first state, the atoms of which have the truth *bits*."""
         held = self._graph.plain_values(bits)
-        anchors = tuple(self._first_anchor(literal >> 1, held) for literal in self.anchored)
+        obligations = tuple(self._first_obligation(literal >> 1, held) for literal in self.owed)
         nothing = (_NOTHING,) * len(self._nodes)
-        return self._looked_at(Residual(anchors, nothing, tuple(held)), held, EMPTY)
+        return self._looked_at(Residual(obligations, nothing, tuple(held)), held, EMPTY)
 
-    def _first_anchor(self, number: int, held: list[bool]) -> _AnchorState:
+    def _first_obligation(self, number: int, held: list[bool]) -> _ObligationState:
         node = self._graph.nodes[number]
         if isinstance(node, UntilNode):
             end = FUTURE if node.most == FUTURE else node.most + 1
-            return Anchor(between(node.least, end), 0)
+            return Obligation(between(node.least, end), 0)
         return Verdict.TRUE if held[number] else Verdict.FALSE
 
     def next(self, residual: Residual, bits: int, elapsed: Duration) -> Residual:
@@ -163,7 +163,7 @@ class Progression:
             elapsed: The time since the state before, at least one nanosecond.
         """
         moved = Residual(
-            tuple(_moved(anchor, elapsed) for anchor in residual.anchors),
+            tuple(_moved(obligation, elapsed) for obligation in residual.obligations),
             tuple(known.moved(elapsed) for known in residual.knowledge),
             residual.held,
         )
@@ -172,25 +172,27 @@ class Progression:
 
     def verdict(self, residual: Residual) -> Verdict:
         """Return what is known about the whole formula."""
-        return self._value(self._graph.root, residual.anchors)
+        return self._value(self._graph.root, residual.obligations)
 
     def _looked_at(self, moved: Residual, held: list[bool], interval: Instants) -> Residual:
         """Take in what held over *interval* and what holds now."""
         known = self._learnt(moved, held, interval)
-        anchors = tuple(
-            self._decided(literal >> 1, anchor, known)
-            for literal, anchor in zip(self.anchored, moved.anchors, strict=True)
+        obligations = tuple(
+            self._decided(literal >> 1, obligation, known)
+            for literal, obligation in zip(self.owed, moved.obligations, strict=True)
         )
-        relevant = set(self._relevant(self._graph.root, anchors))
-        anchors = tuple(
-            anchor if literal in relevant or isinstance(anchor, Verdict) else Verdict.UNDECIDED
-            for literal, anchor in zip(self.anchored, anchors, strict=True)
+        relevant = set(self._relevant(self._graph.root, obligations))
+        obligations = tuple(
+            obligation
+            if literal in relevant or isinstance(obligation, Verdict)
+            else Verdict.UNDECIDED
+            for literal, obligation in zip(self.owed, obligations, strict=True)
         )
-        anchors = tuple(
-            self._without_redundant(literal >> 1, anchor, known)
-            for literal, anchor in zip(self.anchored, anchors, strict=True)
+        obligations = tuple(
+            self._without_redundant(literal >> 1, obligation, known)
+            for literal, obligation in zip(self.owed, obligations, strict=True)
         )
-        return self._closed_up(self._remembered(anchors, known, held))
+        return self._closed_up(self._remembered(obligations, known, held))
 
     def _learnt(self, moved: Residual, held: list[bool], interval: Instants) -> list[Knowledge]:
         """Return what is known about each node, from those without parts upwards."""
@@ -205,50 +207,54 @@ class Progression:
             known.append(moved.knowledge[number].joined(true, false))
         return known
 
-    def _decided(self, number: int, anchor: _AnchorState, known: list[Knowledge]) -> _AnchorState:
-        """Return an anchor with the witnesses that are left, or what decides it."""
+    def _decided(
+        self, number: int, obligation: _ObligationState, known: list[Knowledge]
+    ) -> _ObligationState:
+        """Return an obligation with the witnesses that are left, or what decides it."""
         node = self._graph.nodes[number]
-        if isinstance(anchor, Verdict) or not isinstance(node, UntilNode):
-            return anchor
+        if isinstance(obligation, Verdict) or not isinstance(node, UntilNode):
+            return obligation
         right = known[node.right >> 1].of(node.right)
-        witnesses = without(anchor.witnesses, right.false)
+        witnesses = without(obligation.witnesses, right.false)
         last_possible, left_from = FUTURE, FUTURE
         if node.left != TRUTH:
             left = known[node.left >> 1].of(node.left)
-            left_from = run_end(left.true, anchor.left_from)
-            last_possible = first_from(left.false, anchor.left_from)
+            left_from = run_end(left.true, obligation.left_from)
+            last_possible = first_from(left.false, obligation.left_from)
         witnesses = both(witnesses, between(PAST, _next(last_possible)))
         if not witnesses:
             return Verdict.FALSE
         if both(both(right.true, witnesses), between(PAST, _next(left_from))):
             return Verdict.TRUE
-        return Anchor(witnesses, 0 if node.left == TRUTH else left_from)
+        return Obligation(witnesses, 0 if node.left == TRUTH else left_from)
 
-    def _value(self, literal: Literal, anchors: tuple[_AnchorState, ...]) -> Verdict:
+    def _value(self, literal: Literal, obligations: tuple[_ObligationState, ...]) -> Verdict:
         at = self._place.get(literal & ~1)
         if at is None:
             node = self._graph.nodes[literal >> 1]
             inner = node.literals if isinstance(node, All) else ()
-            value = min((self._value(k, anchors) for k in inner), default=Verdict.TRUE)
+            value = min((self._value(k, obligations) for k in inner), default=Verdict.TRUE)
         else:
-            state = anchors[at]
-            value = Verdict.UNDECIDED if isinstance(state, Anchor) else state
+            state = obligations[at]
+            value = Verdict.UNDECIDED if isinstance(state, Obligation) else state
         return Verdict(-value) if literal & 1 else value
 
-    def _relevant(self, literal: Literal, anchors: tuple[_AnchorState, ...]) -> Iterator[Literal]:
-        """Yield the anchors on which the verdict can still depend."""
-        if self._value(literal, anchors) is not Verdict.UNDECIDED:
+    def _relevant(
+        self, literal: Literal, obligations: tuple[_ObligationState, ...]
+    ) -> Iterator[Literal]:
+        """Yield the obligations on which the verdict can still depend."""
+        if self._value(literal, obligations) is not Verdict.UNDECIDED:
             return
         node = self._graph.nodes[literal >> 1]
         if literal & ~1 in self._place:
             yield literal & ~1
         elif isinstance(node, All):
             for inner in node.literals:
-                yield from self._relevant(inner, anchors)
+                yield from self._relevant(inner, obligations)
 
     def _without_redundant(
-        self, number: int, anchor: _AnchorState, known: list[Knowledge]
-    ) -> _AnchorState:
+        self, number: int, obligation: _ObligationState, known: list[Knowledge]
+    ) -> _ObligationState:
         """Drop past witnesses that cannot be better than others that stay.
 
         Where the right side comes down to `not eventually [a, b] f`, an instant is no better
@@ -257,12 +263,12 @@ class Progression:
         to `eventually [a, b] f`, the earlier of the two is no better.
         """
         node = self._graph.nodes[number]
-        if not isinstance(anchor, Anchor) or not isinstance(node, UntilNode):
-            return anchor
-        if node.left != TRUTH or anchor.witnesses[0] >= 1:
-            return anchor
+        if not isinstance(obligation, Obligation) or not isinstance(node, UntilNode):
+            return obligation
+        if node.left != TRUTH or obligation.witnesses[0] >= 1:
+            return obligation
         redundant, last_by_part = EMPTY, dict[Literal, int]()
-        for start, end in pieces(both(anchor.witnesses, between(PAST, 1))):
+        for start, end in pieces(both(obligation.witnesses, between(PAST, 1))):
             part = self.undecided_part(node.right, (start, end), known)
             inner = self._graph.nodes[part >> 1]
             if isinstance(inner, UntilNode) and inner.left == TRUTH:
@@ -275,7 +281,7 @@ class Progression:
                     poor = both(barren, between(start, end - 1))
                 redundant = either(redundant, poor)
                 last_by_part[part] = end - 1
-        return Anchor(without(anchor.witnesses, redundant), anchor.left_from)
+        return Obligation(without(obligation.witnesses, redundant), obligation.left_from)
 
     def undecided_part(
         self, literal: Literal, instants: Instants, known: Sequence[Knowledge]
@@ -296,9 +302,9 @@ class Progression:
         so that a gap longer than all of these together is as good as any longer one.
         """
         bounds = {bound for known in residual.knowledge for bound in (*known.true, *known.false)}
-        for anchor in residual.anchors:
-            if isinstance(anchor, Anchor):
-                bounds.update((*anchor.witnesses, anchor.left_from))
+        for obligation in residual.obligations:
+            if isinstance(obligation, Obligation):
+                bounds.update((*obligation.witnesses, obligation.left_from))
         past = sorted((b for b in bounds if PAST < b < 0), reverse=True)
         if not past or past[-1] > -self._longest:
             return residual
@@ -307,29 +313,29 @@ class Progression:
             new[bound] = new[nearer] - min(nearer - bound, self._longest)
             nearer = bound
         return Residual(
-            tuple(_renamed_anchor(anchor, new) for anchor in residual.anchors),
+            tuple(_renamed_anchor(obligation, new) for obligation in residual.obligations),
             tuple(_renamed_knowledge(known, new) for known in residual.knowledge),
             residual.held,
         )
 
     def _remembered(
-        self, anchors: tuple[_AnchorState, ...], known: list[Knowledge], held: list[bool]
+        self, obligations: tuple[_ObligationState, ...], known: list[Knowledge], held: list[bool]
     ) -> Residual:
         """Forget what no undecided operator asks for, from the top downwards."""
         asked = [EMPTY] * len(known)
-        for literal, anchor in zip(self.anchored, anchors, strict=True):
+        for literal, obligation in zip(self.owed, obligations, strict=True):
             node = self._graph.nodes[literal >> 1]
-            if isinstance(anchor, Anchor) and isinstance(node, UntilNode):
-                last = anchor.witnesses[-1]
-                _ask(asked, node.right, anchor.witnesses)
+            if isinstance(obligation, Obligation) and isinstance(node, UntilNode):
+                last = obligation.witnesses[-1]
+                _ask(asked, node.right, obligation.witnesses)
                 if node.left != TRUTH:
-                    _ask(asked, node.left, between(anchor.left_from, _previous(last)))
+                    _ask(asked, node.left, between(obligation.left_from, _previous(last)))
         for number, node in reversed(self._nodes):
             known[number] = known[number].within(asked[number])
             if asked[number] and self._graph.temporal[number]:
                 self._ask_parts(asked, node, _open(known[number], asked[number]))
         still = [bool(value and a and a[-1] > 1) for value, a in zip(held, asked, strict=True)]
-        return Residual(anchors, tuple(known), tuple(still))
+        return Residual(obligations, tuple(known), tuple(still))
 
     def _ask_parts(self, asked: list[Instants], node: GraphNode, pending: Instants) -> None:
         match node:
@@ -355,11 +361,11 @@ def _renamed(instants: Instants, new: Mapping[int, int]) -> Instants:
     return tuple(new.get(bound, bound) for bound in instants)
 
 
-def _renamed_anchor(anchor: _AnchorState, new: Mapping[int, int]) -> _AnchorState:
-    if isinstance(anchor, Verdict):
-        return anchor
-    left_from = new.get(anchor.left_from, anchor.left_from)
-    return Anchor(_renamed(anchor.witnesses, new), left_from)
+def _renamed_anchor(obligation: _ObligationState, new: Mapping[int, int]) -> _ObligationState:
+    if isinstance(obligation, Verdict):
+        return obligation
+    left_from = new.get(obligation.left_from, obligation.left_from)
+    return Obligation(_renamed(obligation.witnesses, new), left_from)
 
 
 def _renamed_knowledge(known: Knowledge, new: Mapping[int, int]) -> Knowledge:
@@ -368,10 +374,10 @@ def _renamed_knowledge(known: Knowledge, new: Mapping[int, int]) -> Knowledge:
     return Knowledge(_renamed(known.true, new), _renamed(known.false, new))
 
 
-def _moved(anchor: _AnchorState, by: int) -> _AnchorState:
-    if isinstance(anchor, Verdict):
-        return anchor
-    return Anchor(shift(anchor.witnesses, -by), anchor.left_from - by)
+def _moved(obligation: _ObligationState, by: int) -> _ObligationState:
+    if isinstance(obligation, Verdict):
+        return obligation
+    return Obligation(shift(obligation.witnesses, -by), obligation.left_from - by)
 
 
 def _next(instant: int) -> int:

@@ -17,7 +17,7 @@ from dyknow.mtl.graph import (
     negation,
 )
 from dyknow.mtl.instants import FUTURE, pieces
-from dyknow.mtl.residuals import Anchor, Progression, Residual
+from dyknow.mtl.residuals import Obligation, Progression, Residual
 from dyknow.mtl.syntax import Formula, Interval
 from dyknow.time import Duration
 
@@ -37,14 +37,14 @@ class _Wording:
     def __init__(self, graph: FormulaGraph, progression: Progression, residual: Residual) -> None:
         self._graph = graph
         self._progression = progression
-        self._states = dict(zip(progression.anchored, residual.anchors, strict=True))
+        self._states = dict(zip(progression.owed, residual.obligations, strict=True))
         self._knowledge = residual.knowledge
 
     def formula(self, literal: Literal) -> Formula:
         """Return what is left of a literal at the top level."""
         node = self._graph.nodes[literal >> 1]
         state = self._states.get(literal & ~1)
-        if isinstance(state, Anchor) and isinstance(node, UntilNode):
+        if isinstance(state, Obligation) and isinstance(node, UntilNode):
             formula = self._anchor(node, state)
         elif state is not None:
             formula = syntax.TRUE if state == syntax.Verdict.TRUE else syntax.FALSE
@@ -53,16 +53,16 @@ class _Wording:
             formula = conjunction([self.formula(k) for k in inner])
         return negation(formula) if literal & 1 else formula
 
-    def _anchor(self, node: UntilNode, anchor: Anchor) -> Formula:
+    def _anchor(self, node: UntilNode, obligation: Obligation) -> Formula:
         right = self._graph.formula(node.right)
-        options = pieces(anchor.witnesses)
+        options = pieces(obligation.witnesses)
         if node.left == TRUTH:
             return disjunction([f for p in options for f in self._eventually(node, right, *p)])
         left = self._graph.formula(node.left)
         until = [syntax.Until(_interval(*piece), left, right) for piece in options]
-        if anchor.left_from >= 1 or anchor.witnesses[0] < 1:
+        if obligation.left_from >= 1 or obligation.witnesses[0] < 1:
             return disjunction([*until])
-        so_far = syntax.Always(_interval(anchor.left_from, 1), left)
+        so_far = syntax.Always(_interval(obligation.left_from, 1), left)
         return conjunction([so_far, disjunction([*until])])
 
     def _eventually(self, node: UntilNode, right: Formula, start: int, end: int) -> list[Formula]:

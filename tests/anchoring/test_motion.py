@@ -11,8 +11,8 @@ from anchoring.motion import (
     ACROSS_A_ROAD,
     ALONG_A_ROAD,
     AxisState,
-    Manoeuvre,
-    Manoeuvres,
+    MotionMode,
+    MotionModes,
     predict_in_plane,
     update_in_plane,
 )
@@ -59,13 +59,13 @@ def test_the_plane_filter_does_what_filterpy_does(steps):
         np.testing.assert_allclose(covariance[0], oracle.P, rtol=1e-7, atol=1e-8)
 
 
-_TWO = Manoeuvres(
-    kinds=(Manoeuvre(density=0.05), Manoeuvre(density=4.0)), rates=((0.0, 0.4), (1.5, 0.0))
+_TWO = MotionModes(
+    kinds=(MotionMode(density=0.05), MotionMode(density=4.0)), rates=((0.0, 0.4), (1.5, 0.0))
 )
 
 
 def _imm_oracle(elapsed, mean, covariance, weight):
-    """Return filterpy's estimator for the two manoeuvres of `_TWO`."""
+    """Return filterpy's estimator for the two modes of `_TWO`."""
     filters = []
     for kind in _TWO.kinds:
         one = KalmanFilter(dim_x=2, dim_z=1)
@@ -81,7 +81,7 @@ def _imm_oracle(elapsed, mean, covariance, weight):
 @settings(derandomize=True, deadline=None, max_examples=30)
 @given(st.lists(st.tuples(st.floats(-5.0, 5.0), st.floats(0.05, 6.0)), min_size=1, max_size=12))
 def test_the_axis_filter_does_what_filterpy_does(measurements):
-    """Mixing, predicting and weighing manoeuvres equals filterpy's interacting filters."""
+    """Mixing, predicting and weighing modes equals filterpy's interacting filters."""
     mean, covariance = np.array([0.5, -1.0]), np.array([[2.0, 0.3], [0.3, 1.0]])
     state = _TWO.start(mean[None], np.array([[2.0, 0.3, 1.0]]))
     oracle = _imm_oracle(0.1, mean, covariance, state.weight[0])
@@ -123,17 +123,17 @@ def test_rows_do_not_influence_each_other(seed, n):
         np.testing.assert_allclose(likelihood[row], one, rtol=1e-12)
 
 
-def _followed(manoeuvres, positions, deviation, rng, copies=60):
+def _followed(modes, positions, deviation, rng, copies=60):
     """Return estimates (t, copies, 2) of a movement measured every 100 ms."""
-    state = manoeuvres.start(
+    state = modes.start(
         np.tile([positions[0], 0.0], (copies, 1)), np.tile([4.0, 0.0, 100.0], (copies, 1))
     )
     half = deviation * np.sqrt(3.0)
     estimates = []
     for position in positions[1:]:
         measured = position + rng.uniform(-half, half, copies)
-        state = manoeuvres.predict(state, np.full(copies, 0.1))
-        state, _ = manoeuvres.update(state, measured, np.full(copies, deviation**2 + 0.01))
+        state = modes.predict(state, np.full(copies, 0.1))
+        state, _ = modes.update(state, measured, np.full(copies, deviation**2 + 0.01))
         estimates.append(state.expected())
     return np.array(estimates)
 

@@ -120,8 +120,9 @@ def _missed(result: RunResult) -> Table:
 
 
 def _scores(score_by_run: Mapping[str, Mapping[str, Score]]) -> Table:
-    counts = ("true", "recognised", "correct", "precision", "recall", "not wholly in view")
-    table = Table("", "", *counts, box=SIMPLE_HEAD, title="Score")
+    counts = ("true", "recognised", "correct", "precision", "recall", "left out")
+    caption = "left out: true, but not wholly in view"
+    table = Table("", "", *counts, box=SIMPLE_HEAD, title="Score", caption=caption)
     for run, score_by_kind in score_by_run.items():
         for kind, score in score_by_kind.items():
             table.add_row(escape(run), kind, *_row(score))
