@@ -16,6 +16,7 @@ import numpy.typing as npt
 from dyknow.streams.table import Table
 from dyknow.time import SECOND, Duration, TimePoint, text_from_duration
 from traffic.errors import SimulatorError
+from traffic.sumo.bodies import Bodies
 from traffic.sumo.colours import random_colours
 from traffic.sumo.libraries import load_simulator
 from traffic.sumo.output import CapturedOutput
@@ -163,6 +164,7 @@ class _Vehicles:
         self._size = np.empty((64, 3))
         self._colour = np.empty((64, 3), dtype=np.uint8)
         self._class = np.empty(64, dtype=np.int8)
+        self._bodies = Bodies()
 
     def read(self, time: TimePoint) -> Frame:
         """Return the state of all vehicles that are somewhere."""
@@ -174,8 +176,8 @@ class _Vehicles:
         speed = np.array(list(map(api.getSpeed, names)), dtype=np.float64)
         along = np.array(list(map(api.getLanePosition, names)), dtype=np.float64)
         lane = np.array([self._lane(name) for name in map(api.getLaneID, names)], dtype=np.int32)
-        heading = headings_of(angle)
         length, width, height = self._size[numbers].T
+        heading = self._bodies.headings(numbers, front, headings_of(angle), length)
         forward = np.column_stack([np.cos(heading), np.sin(heading)])
         vehicles = Table(
             VEHICLE,
