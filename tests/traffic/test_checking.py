@@ -1,0 +1,71 @@
+"""Faults of the files that people write."""
+
+import pytest
+
+from traffic.bundled import data_folder
+from traffic.checking import faults_of_file
+from traffic.errors import RequestError
+
+WRITTEN = sorted(
+    path
+    for path in data_folder().rglob("*")
+    if path.suffix in {".kpl", ".chronicle", ".toml", ".mtl"}
+)
+
+
+@pytest.mark.parametrize("path", WRITTEN, ids=lambda path: path.name)
+def test_what_comes_with_the_program_has_no_faults(path):
+    """Specification, chronicles and scenarios are as they should be."""
+    assert faults_of_file(path) == []
+
+
+@pytest.mark.parametrize(
+    ("name", "text", "places"),
+    [
+        ("f.mtl", "always p and", ["1:13"]),
+        ("f.mtl", "always [2, 1] p and\neventually [4, 3] q", ["1:8", "2:12"]),
+        ("s.kpl", "stream a = b\nstream c = d", ["1:12", "2:12"]),
+        ("s.kpl", "strmgen", ["1:8"]),
+        ("c.chronicle", "chronicle a {\n event(p:(?, true), t1)\n t2 < t1 }", ["3:2"]),
+        ("c.chronicle", "chronicle {", ["1:11"]),
+        ("s.toml", 'duration = -1\nnetwork = "crosing"', ["1:1"]),
+        ("s.toml", 'duration = 1\nnetwork = "crosing"', ["2:1"]),
+        ("s.toml", "duration =\n", ["1:11"]),
+        ("s.toml", 'duration = "1 s"\nnetwork = 3\nflows = 4\ncamera = 5', ["2:1", "3:1", "4:1"]),
+    ],
+)
+def test_every_fault_has_its_place_and_its_line(name, text, places, tmp_path):
+    """A fault begins with file, line and column, and ends with the line and a caret."""
+    path = tmp_path / name
+    path.write_text(text)
+
+    faults = faults_of_file(path)
+
+    assert [fault.split(": ")[0] for fault in faults] == [f"{path}:{place}" for place in places]
+    for fault, place in zip(faults, places, strict=True):
+        line, column = map(int, place.split(":"))
+        *_, excerpt, carets = fault.split("\n")
+        assert excerpt == text.split("\n")[line - 1]
+        assert carets.index("^") == column - 1
+
+
+@pytest.mark.parametrize("ending", [".kpl", ".chronicle", ".mtl", ".toml"])
+def test_that_a_file_cannot_be_read_is_a_fault(ending, tmp_path):
+    """Missing, a folder, or no text."""
+    folder, binary = tmp_path / f"folder{ending}", tmp_path / f"binary{ending}"
+    folder.mkdir()
+    binary.write_bytes(b"\xff\xfe")
+
+    (missing,) = faults_of_file(tmp_path / f"missing{ending}")
+    (is_folder,) = faults_of_file(folder)
+    (is_binary,) = faults_of_file(binary)
+
+    assert missing.endswith("No such file or directory")
+    assert is_folder.endswith("Is a directory")
+    assert is_binary.endswith("is not a text in UTF-8")
+
+
+def test_the_ending_says_what_a_file_is(tmp_path):
+    """A file of an unknown kind cannot be checked."""
+    with pytest.raises(RequestError, match=r"ends in one of \.kpl, \.chronicle, \.mtl, \.toml"):
+        faults_of_file(tmp_path / "a.txt")

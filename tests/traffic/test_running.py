@@ -1,0 +1,150 @@
+"""Whole runs: as good as they should be, the same again, and blind to the truth."""
+
+import ast
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from dyknow.streams.sample import Sample
+from dyknow.streams.table import Table
+from dyknow.time import MILLISECOND, TimePoint
+from networks.reading import read_road_map
+from perception.camera import Calibration, Camera
+from traffic.bundled import data_folder
+from traffic.errors import ResultError
+from traffic.request import RunRequest
+from traffic.results import read_result
+from traffic.running import run_scenario
+from traffic.system import MonitoringSystem, World
+
+ROOT = Path(__file__).parents[2]
+CROSSING = data_folder() / "networks" / "crossing" / "crossing.net.xml"
+PERCEPT = {
+    "position", "velocity", "covariance", "length", "width", "colour", "temperature",
+    "observed_at",
+}  # fmt: skip
+
+
+def run(out, **options):
+    """Run a bundled scenario from the simulator's positions, and return the result."""
+    settings = {"scenario": "crossing", "view": "truth", **options}
+    return run_scenario(RunRequest.from_texts(**settings, out=out), lambda *_: None)[0]
+
+
+@pytest.mark.sumo
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("scenario", "kind", "duration", "noise"),
+    [("crossing", "turn", "40 s", 0.0), ("rural", "overtake", "90 s", 1.0)],
+)
+def test_manoeuvres_are_recognised(scenario, kind, duration, noise, tmp_path):
+    """From good positions, at least nine of ten are found, and nine of ten found are true."""
+    result = run(tmp_path / "x", scenario=scenario, duration=duration, position_noise=noise)
+
+    score = result.score[kind]
+    assert score.truth >= 3
+    assert score.precision >= 0.9
+    assert score.recall >= 0.9
+
+
+@pytest.mark.sumo
+def test_the_same_seed_gives_the_same_bytes(tmp_path):
+    """Only the timing may differ; another seed gives another run."""
+    options = {"duration": "8 s", "position_noise": 2.0}
+    texts = []
+    for name, seed in (("a", 3), ("b", 3), ("c", 4)):
+        run(tmp_path / name, seed=seed, **options)
+        result = json.loads((tmp_path / name / "result.json").read_text())
+        del result["timing"], result["settings"]
+        texts.append(json.dumps(result))
+
+    assert texts[0] == texts[1] != texts[2]
+    first, second, _ = (tmp_path / name / "sumo" / "traffic.rou.xml" for name in "abc")
+    assert first.read_bytes() == second.read_bytes()
+
+
+@pytest.mark.sumo
+def test_a_run_keeps_what_is_needed_to_understand_it(tmp_path):
+    """Result, origin, the declared network and chronicles, and SUMO's own files."""
+    result = run(tmp_path / "x", duration="2 s", seed=7)
+
+    origin = json.loads((tmp_path / "x" / "origin.json").read_text())
+    specification = data_folder() / "specifications" / "monitoring.kpl"
+    assert read_result(tmp_path / "x") == result
+    assert origin["request"]["seed"] == 7
+    assert origin["scenario"]["duration"] == 2 * 10**9
+    assert {"dyknow-traffic", "python", "numpy", "libsumo"} <= set(origin["versions"])
+    copies = tmp_path / "x" / "specification"
+    assert (copies / "monitoring.kpl").read_bytes() == specification.read_bytes()
+    assert {path.suffix for path in copies.iterdir()} == {".kpl", ".chronicle"}
+    with pytest.raises(ResultError, match="exists already"):
+        run(tmp_path / "x", duration="2 s")
+
+
+class Vehicles:
+    """Three cars that stand in a crossing, for a second at 25 Hz."""
+
+    def samples(self):
+        """Yield them as the simulator would."""
+        columns = {
+            "position": np.array([[-8.0, 2.0], [5.0, -3.0], [12.0, 3.0]]),
+            "heading": np.zeros(3),
+            "speed": np.zeros(3),
+            "length": np.full(3, 4.5),
+            "width": np.full(3, 1.8),
+            "height": np.full(3, 1.5),
+            "colour": np.full((3, 3), 200, dtype=np.uint8),
+            "vehicle_class": np.zeros(3, dtype=np.int8),
+        }
+        for i in range(25):
+            time = TimePoint(i * 40 * MILLISECOND)
+            yield Sample(Table("vehicle", np.arange(3) + 1000, columns), time, time)
+
+
+@pytest.mark.parametrize("view", ["vision", "truth"])
+def test_percepts_tell_nothing_that_a_camera_cannot_see(view):
+    """A percept has the columns of vision in both views: no lane, no name, no road."""
+    calibration = Calibration.from_field_of_view(width=320, height=180, horizontal=1.0)
+    camera = Camera.looking_at(0.0, 0.0, 60.0, heading=0.0, calibration=calibration)
+    generator = np.random.Generator(np.random.PCG64(1))
+    world = World(read_road_map(CROSSING), Vehicles(), camera, generator)
+    parameters = {"view": view, "sample_period": 100.0, "position_noise": 0.0}
+    system = MonitoringSystem(world, parameters, ("percepts",))
+    tables = []
+    system.network.subscribe("percepts", lambda sample: tables.append(sample.value))
+
+    system.network.kernel.run(TimePoint(960 * MILLISECOND))
+
+    assert len(tables) == 25
+    assert all(set(table.columns) == PERCEPT for table in tables)
+    assert all(table.sort == "percept" for table in tables)
+    if view == "vision":
+        assert all(not np.isin(table.ids, np.arange(3) + 1000).any() for table in tables)
+
+
+def test_only_cameras_and_the_noisy_view_receive_the_vehicles():
+    """In the specification nothing else takes the stream of the simulator's vehicles."""
+    specification = data_folder() / "specifications" / "monitoring.kpl"
+    lines = [line.partition("#")[0] for line in specification.read_text("utf-8").splitlines()]
+    takers = {
+        line.split("=")[1].split("(")[0].strip()
+        for line in lines
+        if line.startswith("strmgen") and "vehicles" in line.partition("=")[2]
+    }
+
+    assert takers == {"vehicles", "ColourCamera", "ThermalCamera", "NoisyPositions"}
+
+
+def test_hidden_columns_are_read_for_the_truth_alone():
+    """Only the simulator makes them and only the truth reads them."""
+    readers = {
+        path.relative_to(ROOT).parts[:2]
+        for package in ("traffic", "perception", "anchoring", "chronicles", "dyknow", "networks")
+        for path in (ROOT / package).rglob("*.py")
+        for node in ast.walk(ast.parse(path.read_text("utf-8")))
+        if isinstance(node, ast.Attribute) and node.attr == "hidden"
+    }
+
+    assert readers == {("traffic", "sumo"), ("traffic", "truth")}
