@@ -87,6 +87,17 @@ def test_a_damaged_specification_is_read_or_refused(data):
     assert all(fault.report().startswith("s.kpl:") for fault in faults)
 
 
+def test_a_parenthesis_that_is_never_closed_is_told_at_once():
+    """How long that takes does not grow with the comments behind it."""
+    text = SPECIFICATION.read_text("utf-8").replace(
+        "reestablish = ", "reestablish = (  # note\n" + "# ---- # # a long remark\n" * 40, 1
+    )
+
+    with pytest.raises(SpecificationError) as caught:
+        parse_specification(text, "s.kpl")
+    assert caught.value.report().startswith("s.kpl:")
+
+
 @pytest.mark.parametrize("path", CHRONICLES, ids=lambda path: path.stem)
 @fuzz(60)
 @given(data=st.data())
