@@ -62,7 +62,7 @@ _EXPECTED = {
     "$END": "the end of the text",
 }
 _ANY_VALUE = {"NAME", "INTEGER", "STRING"}
-_MOST_ALTERNATIVES = 6
+_MOST_ALTERNATIVES = 8
 _LONGEST = 1 << 58
 
 
