@@ -31,5 +31,5 @@ def report(
     elif len(results) == 1:
         show_result(results[0])
     else:
-        scores = {run.name: result.score for run, result in zip(runs, results, strict=True)}
+        scores = {str(run): result.score for run, result in zip(runs, results, strict=True)}
         show_scores({**scores, "all": total})
