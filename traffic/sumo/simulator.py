@@ -1,7 +1,7 @@
 """SUMO in this process, read once per step into columns.
 
-The plain getters of libsumo are faster than its subscriptions (so says SUMO's issue 14101 too), and
-what never changes is asked once per vehicle. One simulation per process.
+The plain getters of libsumo are faster than its subscriptions (so says SUMO's issue 14101 too),
+and what never changes is asked once per vehicle. One simulation per process.
 """
 
 from collections.abc import Sequence
