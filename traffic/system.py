@@ -5,8 +5,8 @@ module translates what the packages have into what their neighbours want, which 
 complete list of what flows between them.
 """
 
-from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass, field, fields
 from functools import cache, partial
 from pathlib import Path
 from typing import Any
@@ -37,6 +37,7 @@ from perception.painting import GroundPainter
 from perception.processes import ColourCamera, ThermalCamera, VisionPercepts, make_painter
 from perception.scene import Ground, build_surroundings
 from traffic.bundled import data_folder
+from traffic.errors import RequestError
 from traffic.features.changes import Changes
 from traffic.features.link_turns import LinkTurns
 from traffic.features.moving import Moving
@@ -45,7 +46,15 @@ from traffic.features.positions import NoisyPositions
 from traffic.features.relations import CarRelations
 from traffic.features.stability import StableFor
 
-__all__ = ["MonitoringSystem", "World", "read_specification"]
+__all__ = [
+    "Made",
+    "MonitoringSystem",
+    "World",
+    "bundled_specification",
+    "implementations_of",
+    "read_specification",
+    "specification_from",
+]
 
 _SPECIFICATION = "monitoring.kpl"
 
@@ -68,32 +77,87 @@ class World:
 
 
 class MonitoringSystem:
-    """The network of the specification, ready to run.
+    """The network of a specification, ready to run.
 
     Args:
         world: What surrounds it.
         parameters: Values for the parameters of the specification.
-        outputs: Names of the output streams that are wanted; only what they need is built.
+        outputs: Names of the output streams that are wanted; only what they need is built. None
+            for all.
+        specification: Which processes and streams there are; the bundled one by default.
+        sources: What makes the source of a symbol, in place of what the world offers.
 
     Attributes:
+        specification: Which processes and streams there are.
+        implementations: What its symbols stand for.
         network: The network.
         structures: Which symbol was linked to which objects, down to the percepts.
+        files: That units have read, such as chronicles.
     """
 
     def __init__(
-        self, world: World, parameters: Mapping[str, object], outputs: tuple[str, ...]
+        self,
+        world: World,
+        parameters: Mapping[str, object],
+        outputs: tuple[str, ...] | None = None,
+        *,
+        specification: Specification | None = None,
+        sources: Mapping[str, Callable[[], Source]] | None = None,
     ) -> None:
-        self._histories: list[LinkHistory] = []
-        self._road_map = world.road_map
-        implementations = Implementations(
-            sources=_sources(world), units=_units(world), link=self._link
-        )
+        made = Made()
+        self.specification = specification or read_specification()
+        self.implementations = implementations_of(world, sources, made)
         self.network: Network = build_network(
-            read_specification(), implementations, parameters, outputs
+            self.specification, self.implementations, parameters, outputs
         )
-        self.structures = ObjectLinkageStructures(self._histories)
+        self.structures = ObjectLinkageStructures(made.histories)
+        self.files = tuple(dict.fromkeys(made.files))
 
-    def _link(
+
+@dataclass(frozen=True, slots=True)
+class Made:
+    """What became known while the parts of a system were made.
+
+    Attributes:
+        histories: Of the link processes, in the order in which they were made.
+        files: That units have read.
+    """
+
+    histories: list[LinkHistory] = field(default_factory=list)
+    files: list[Path] = field(default_factory=list)
+
+
+def implementations_of(
+    world: World,
+    sources: Mapping[str, Callable[[], Source]] | None = None,
+    made: Made | None = None,
+) -> Implementations:
+    """Return what the symbols of a specification stand for in *world*.
+
+    The units that are made of one answer share the randomness of the world: to compute the same
+    again, make another world of the same seed and ask again.
+
+    Args:
+        world: What surrounds the system.
+        sources: What makes the source of a symbol, in place of what the world offers.
+        made: Is told what becomes known when the parts are made.
+    """
+    made = Made() if made is None else made
+    return Implementations(
+        sources={**_sources(world), **(sources or {})},
+        units=_units(world, made.files),
+        link=_Links(world.road_map, made.histories).make,
+    )
+
+
+class _Links:
+    """Makes link processes, and collects their histories."""
+
+    def __init__(self, road_map: RoadMap, histories: list[LinkHistory]) -> None:
+        self._road_map = road_map
+        self._histories = histories
+
+    def make(
         self,
         unit: str,
         establish: Formula,
@@ -101,18 +165,25 @@ class MonitoringSystem:
         maintain: Formula,
         settings: Mapping[str, Any],
     ) -> LinkProcess:
+        known = [each.name for each in fields(LinkSettings)]
+        if unknown := [name for name in settings if name not in known]:
+            raise ValueError(f"a link process has no setting '{unknown[0]}'")
+        if "remove_after" not in settings:
+            raise ValueError("a link process needs the setting 'remove_after'")
         conditions = LinkSettings(establish, reestablish, maintain, **settings)
-        process = LinkProcess(self._link_unit(unit), conditions)
+        process = LinkProcess(self._unit(unit), conditions)
         self._histories.append(process.history)
         return process
 
-    def _link_unit(self, name: str) -> LinkUnit:
-        units: dict[str, LinkUnit] = {
-            "WorldObject": WorldObject(),
-            "OnRoadObject": OnRoadObject(self._road_map),
-            "Car": Car(self._road_map),
+    def _unit(self, name: str) -> LinkUnit:
+        units: dict[str, Callable[[], LinkUnit]] = {
+            "WorldObject": WorldObject,
+            "OnRoadObject": lambda: OnRoadObject(self._road_map),
+            "Car": lambda: Car(self._road_map),
         }
-        return units[name]
+        if name not in units:
+            raise ValueError(f"expected one of {', '.join(units)} to be linked, found '{name}'")
+        return units[name]()
 
 
 class _Constant:
@@ -126,10 +197,35 @@ class _Constant:
         yield Sample(self._value, TimePoint(0), TimePoint(0))
 
 
-def read_specification() -> Specification:
-    """Return the bundled specification of the whole application, checked."""
-    path = data_folder() / "specifications" / _SPECIFICATION
-    specification = parse_specification(path.read_text(encoding="utf-8"), str(path))
+def bundled_specification() -> Path:
+    """Return the path of the specification of the whole application."""
+    return data_folder() / "specifications" / _SPECIFICATION
+
+
+def read_specification(path: Path | None = None) -> Specification:
+    """Return the specification of a file, the bundled one by default, checked.
+
+    Raises:
+        SpecificationErrors: The specification has faults.
+        RequestError: The file cannot be read.
+    """
+    path = path or bundled_specification()
+    try:
+        text = path.read_text(encoding="utf-8")
+    except OSError as error:
+        raise RequestError("--specification", "a file that can be read", path) from error
+    except UnicodeDecodeError as error:
+        raise RequestError("--specification", "a text in UTF-8", path) from error
+    return specification_from(text, str(path))
+
+
+def specification_from(text: str, name: str) -> Specification:
+    """Return the specification that *text* says, checked; *name* is for messages.
+
+    Raises:
+        SpecificationErrors: The specification has faults.
+    """
+    specification = parse_specification(text, name)
     check(specification)
     return specification
 
@@ -142,7 +238,7 @@ def _sources(world: World) -> dict[str, Any]:
     }
 
 
-def _units(world: World) -> dict[str, Any]:
+def _units(world: World, files: list[Path]) -> dict[str, Any]:
     country, colour, thermal, positions = world.generator.spawn(4)
     painter = cache(lambda: _painter(world.road_map, country))
     vocabularies = {"link": world.road_map.links, "crossing": world.road_map.crossings}
@@ -156,17 +252,24 @@ def _units(world: World) -> dict[str, Any]:
         "NearPairs": NearPairs,
         "CarRelations": CarRelations,
         "Changes": partial(Changes, vocabularies),
-        "Chronicles": _chronicles,
+        "Chronicles": _Chronicles(files).recogniser,
     }
 
 
-def _chronicles(*, file: str, max_delay: Duration) -> ChronicleRecogniser:
-    """Recognise the chronicles of a file: one of the bundled ones by name, or any by its path."""
-    path = Path(file)
-    if not path.suffix:
-        path = data_folder() / "chronicles" / f"{file}.chronicle"
-    models = models_from_chronicles(read_chronicles(path))
-    return ChronicleRecogniser(models, max_delay=max_delay)
+class _Chronicles:
+    """Makes recognisers, and notes which files they have read."""
+
+    def __init__(self, files: list[Path]) -> None:
+        self._files = files
+
+    def recogniser(self, *, file: str, max_delay: Duration) -> ChronicleRecogniser:
+        """Recognise the chronicles of a file: a bundled one by name, or any by its path."""
+        path = Path(file)
+        if not path.suffix:
+            path = data_folder() / "chronicles" / f"{file}.chronicle"
+        models = models_from_chronicles(read_chronicles(path))
+        self._files.append(path)
+        return ChronicleRecogniser(models, max_delay=max_delay)
 
 
 def _painter(road_map: RoadMap, generator: np.random.Generator) -> GroundPainter:
