@@ -4,7 +4,7 @@ What the world does (a late sample, a missing value, an undecided formula) is no
 value in a stream; see `dyknow.streams`.
 """
 
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 
 from dyknow.source_text import Span
 from dyknow.time import TimePoint, text_from_duration
@@ -17,12 +17,21 @@ __all__ = [
     "FeatureError",
     "FormulaSyntaxError",
     "KPLSyntaxError",
+    "LabelAlreadyExistsError",
+    "LabelInUseError",
+    "NoSuchLabelError",
+    "NoSuchPrototypeError",
     "PolicyError",
+    "PolicyNotSupportedError",
     "ProcessError",
+    "PrototypeAlreadyExistsError",
+    "ServiceError",
     "SortMismatchError",
     "SpecificationError",
     "SpecificationErrors",
     "UnknownNameError",
+    "ValueNotAvailableError",
+    "WrongNumberOfInputsError",
 ]
 
 
@@ -98,6 +107,81 @@ class ProcessError(DyKnowError):
         super().__init__(f"process '{label}' failed at {text_from_duration(time)} ms")
         self.label = label
         self.time = time
+
+
+class ServiceError(DyKnowError, ValueError):
+    """A request to a running network cannot be met; most are errors of Heintz (2009), 5.3-5.4."""
+
+
+class LabelAlreadyExistsError(ServiceError):
+    """There is a stream generator of this label already."""
+
+    def __init__(self, label: str) -> None:
+        super().__init__(f"there is a stream generator called '{label}' already")
+        self.label = label
+
+
+class NoSuchLabelError(ServiceError):
+    """There is no stream generator of this label."""
+
+    def __init__(self, label: str, nearest: str | None = None) -> None:
+        hint = f"; did you mean '{nearest}'?" if nearest else ""
+        super().__init__(f"no stream generator called '{label}'{hint}")
+        self.label = label
+
+
+class LabelInUseError(ServiceError):
+    """A process cannot be removed while others receive its streams."""
+
+    def __init__(self, label: str, receivers: Collection[str]) -> None:
+        names = ", ".join(f"'{receiver}'" for receiver in receivers)
+        super().__init__(f"'{label}' is in use by {names}")
+        self.label = label
+        self.receivers = tuple(receivers)
+
+
+class PrototypeAlreadyExistsError(ServiceError):
+    """There is a knowledge process prototype of this name already."""
+
+    def __init__(self, name: str) -> None:
+        super().__init__(f"there is a prototype called '{name}' already")
+        self.name = name
+
+
+class NoSuchPrototypeError(ServiceError):
+    """There is no knowledge process prototype of this name."""
+
+    def __init__(self, name: str, nearest: str | None = None) -> None:
+        hint = f"; did you mean '{nearest}'?" if nearest else ""
+        super().__init__(f"no prototype called '{name}'{hint}")
+        self.name = name
+
+
+class WrongNumberOfInputsError(ServiceError):
+    """A prototype takes another number of input streams than it was given."""
+
+    def __init__(self, name: str, expected: int, found: int) -> None:
+        super().__init__(f"prototype '{name}' takes {expected} input stream(s), found {found}")
+        self.name = name
+        self.expected = expected
+        self.found = found
+
+
+class PolicyNotSupportedError(ServiceError):
+    """A stream generator, or its process, cannot keep the policy that it is asked for."""
+
+    def __init__(self, label: str, reason: str) -> None:
+        super().__init__(f"'{label}' does not support the policy: {reason}")
+        self.label = label
+        self.reason = reason
+
+
+class ValueNotAvailableError(ServiceError):
+    """A query asks for a sample that the stream generator does not hold."""
+
+    def __init__(self, label: str, wanted: str) -> None:
+        super().__init__(f"'{label}' holds no {wanted}")
+        self.label = label
 
 
 class FeatureError(DyKnowError):
