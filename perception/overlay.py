@@ -16,7 +16,7 @@ from perception.camera import Points
 from perception.errors import PerceptionError
 from perception.painting import Image
 
-__all__ = ["FilmError", "FilmWriter", "Mark", "Trail", "draw_overlay", "side_by_side"]
+__all__ = ["FilmError", "FilmWriter", "Mark", "Trail", "draw_overlay", "jpeg_from", "side_by_side"]
 
 Colour = tuple[int, int, int]
 """Red, green, blue."""
@@ -87,6 +87,17 @@ def draw_overlay(
 def side_by_side(left: Image, right: Image) -> Image:
     """Return two images of equal height in one, grey ones as colour."""
     return np.concatenate([_in_colour(left), _in_colour(right)], axis=1)
+
+
+def jpeg_from(image: Image, quality: int) -> bytes:
+    """Return *image* as a JPEG file, which loses what the eye misses least.
+
+    Args:
+        image: shape (h, w) or (h, w, 3), blue, green, red.
+        quality: From 1 to 100.
+    """
+    _, data = cv2.imencode(".jpg", image, [cv2.IMWRITE_JPEG_QUALITY, quality])
+    return data.tobytes()
 
 
 class FilmWriter:

@@ -1,6 +1,5 @@
 """One run: a scenario, simulated, watched, recognised, scored, and written to a folder."""
 
-import math
 import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
@@ -14,17 +13,16 @@ from dyknow.streams.table import Table
 from dyknow.time import MILLISECOND, SECOND, TimePoint
 from networks.reading import read_road_map
 from networks.roads import RoadMap
-from perception.camera import Calibration, Camera
-from traffic.errors import ScenarioError
+from perception.camera import Camera
 from traffic.origin import write_origin
 from traffic.overlaying import Overlay
 from traffic.request import RunRequest, View
 from traffic.results import RunResult, Timing, new_folder, run_folder, write_result
-from traffic.scenarios import CameraSettings
 from traffic.scoring.score import Scorer
 from traffic.sumo.opening import network_of, open_simulation
 from traffic.sumo.simulation import Frame, Simulation
-from traffic.system import MonitoringSystem, World
+from traffic.system import MonitoringSystem
+from traffic.world import World, camera_of, generators_of
 
 __all__ = ["run_scenario"]
 
@@ -44,8 +42,8 @@ def run_scenario(request: RunRequest, on_progress: OnProgress) -> tuple[RunResul
         NetworkError: The network cannot be read.
     """
     road_map = read_road_map(network_of(request.scenario))
-    camera = _camera(request.scenario.camera, road_map) if request.view is View.VISION else None
-    traffic, sensors = np.random.default_rng(request.seed).spawn(2)  # noqa: TID251, the run's
+    camera = camera_of(request.scenario.camera, road_map) if request.view is View.VISION else None
+    traffic, sensors = generators_of(request.seed)
     path = request.out or new_folder(request.scenario.name)
     with (
         run_folder(path) as folder,
@@ -173,24 +171,3 @@ def _settings(request: RunRequest) -> dict[str, str | int | float | None]:
         "position noise m": request.position_noise if is_truth else None,
         "duration s": request.scenario.duration / SECOND,
     }
-
-
-def _camera(settings: CameraSettings | None, road_map: RoadMap) -> Camera:
-    if settings is None:
-        raise ScenarioError("the scenario has no camera")
-    if isinstance(settings.look_at, str):
-        x, y = _centre(settings.look_at, road_map)
-    else:
-        x, y = settings.look_at
-    calibration = Calibration.from_field_of_view(
-        width=settings.width,
-        height=settings.height,
-        horizontal=math.radians(settings.field_of_view),
-    )
-    heading = math.radians(90.0 - settings.heading)
-    return Camera.looking_at(x, y, settings.altitude, heading=heading, calibration=calibration)
-
-
-def _centre(junction: str, road_map: RoadMap) -> tuple[float, float]:
-    x, y = road_map.crossing_centre(road_map.crossing_index(junction))
-    return float(x), float(y)

@@ -32,7 +32,6 @@ from dyknow.streams.sample import Sample
 from dyknow.time import Duration, TimePoint
 from networks.markings import MarkingKind
 from networks.roads import RoadMap
-from perception.camera import Camera
 from perception.painting import GroundPainter
 from perception.processes import ColourCamera, ThermalCamera, VisionPercepts, make_painter
 from perception.scene import Ground, build_surroundings
@@ -45,11 +44,11 @@ from traffic.features.pairs import NearPairs
 from traffic.features.positions import NoisyPositions
 from traffic.features.relations import CarRelations
 from traffic.features.stability import StableFor
+from traffic.world import World
 
 __all__ = [
     "Made",
     "MonitoringSystem",
-    "World",
     "bundled_specification",
     "implementations_of",
     "read_specification",
@@ -57,23 +56,6 @@ __all__ = [
 ]
 
 _SPECIFICATION = "monitoring.kpl"
-
-
-@dataclass(frozen=True, slots=True)
-class World:
-    """What surrounds the system: the map, the eyes, and chance.
-
-    Attributes:
-        road_map: The map.
-        vehicles: The source of true vehicles, which cameras film and noise is added to.
-        camera: The pose of the cameras; None if there are none.
-        generator: Source of all randomness in sensors.
-    """
-
-    road_map: RoadMap
-    vehicles: Source
-    camera: Camera | None
-    generator: np.random.Generator
 
 
 class MonitoringSystem:

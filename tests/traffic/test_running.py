@@ -17,7 +17,8 @@ from traffic.errors import ResultError
 from traffic.request import RunRequest
 from traffic.results import read_result
 from traffic.running import run_scenario
-from traffic.system import MonitoringSystem, World
+from traffic.system import MonitoringSystem
+from traffic.world import World
 
 ROOT = Path(__file__).parents[2]
 CROSSING = data_folder() / "networks" / "crossing" / "crossing.net.xml"

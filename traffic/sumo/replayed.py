@@ -1,0 +1,85 @@
+"""A simulation that took place before: kept as samples, and played again for the score.
+
+What is kept holds the truth, so it stands in a stream of its own, which no process may take:
+only scoring reads it.
+"""
+
+from collections.abc import Iterator, Sequence
+from typing import Any
+
+from dyknow.streams.sample import Sample
+from dyknow.streams.table import Table
+from traffic.sumo.simulation import VEHICLE, Frame, Simulation
+
+__all__ = ["TRUTH", "FrameKeeper", "ReplayedSimulation"]
+
+TRUTH = "truth/vehicles"
+"""The name of the stream in which frames are kept."""
+
+_HIDDEN = ("lane", "lane_position")
+
+Kept = tuple[Table, tuple[str, ...], tuple[str, ...]]
+"""The columns of both tables of a frame, and the names of vehicles and lanes that are new."""
+
+
+class FrameKeeper:
+    """Turns the frames of a simulation into samples that can be kept.
+
+    Args:
+        simulation: Where the frames come from; it names vehicles and lanes.
+    """
+
+    def __init__(self, simulation: Simulation) -> None:
+        self._simulation = simulation
+        self._n_names = 0
+        self._n_lanes = 0
+
+    def sample(self, frame: Frame) -> Sample[Kept]:
+        """Return the sample of the next frame."""
+        names = tuple(self._simulation.names[self._n_names :])
+        lanes = tuple(self._simulation.lanes[self._n_lanes :])
+        self._n_names += len(names)
+        self._n_lanes += len(lanes)
+        table = frame.vehicles.with_columns(**frame.hidden.columns)
+        return Sample((table, names, lanes), frame.time, frame.time)
+
+
+class ReplayedSimulation:
+    """The same frames again (`traffic.sumo.simulation.Simulation`).
+
+    Args:
+        samples: As a `FrameKeeper` made them, in their order; read lazily.
+    """
+
+    def __init__(self, samples: Iterator[Sample[Any]]) -> None:
+        self._samples = samples
+        self._names: list[str] = []
+        self._lanes: list[str] = []
+
+    @property
+    def names(self) -> Sequence[str]:
+        """The simulator's own id of each vehicle, by the id in the tables."""
+        return self._names
+
+    @property
+    def lanes(self) -> Sequence[str]:
+        """The name of each lane, by its number in `Frame.hidden`."""
+        return self._lanes
+
+    def step(self) -> Frame | None:
+        """Return the next frame, or None after the last."""
+        sample = next(self._samples, None)
+        if sample is None:
+            return None
+        table, names, lanes = sample.value
+        self._names += names
+        self._lanes += lanes
+        seen = {name: column for name, column in table.columns.items() if name not in _HIDDEN}
+        hidden = {name: table[name] for name in _HIDDEN}
+        return Frame(
+            sample.valid_time, Table(VEHICLE, table.ids, seen), Table(VEHICLE, table.ids, hidden)
+        )
+
+    def close(self) -> None:
+        """End the replay."""
+        self._samples = iter(())
