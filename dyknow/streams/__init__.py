@@ -6,7 +6,9 @@ Read in this order:
   `values`: when two values are the same
 - `stream`: the questions that can be asked of a stream (thesis section 4.3)
 - `process`: what sources and computational units are
-- `policy`: what a receiver requires of a stream; `conformance`: whether a stream keeps it
+- `policy`: what a receiver requires of a stream; `conformance`: whether a stream keeps it;
+  `refusal`: why a process cannot serve it
 - `adapter`, `ordering`, `sampling`: what makes a stream that keeps it, online
+- `selecting`: fields picked out of values; `merging`: several streams into one that has all
 - `synchronisation`: several streams into one stream of states
 """

@@ -68,14 +68,15 @@ class Filter:
     def _order_violation(self, sample: Sample[Any], last: TimePoint) -> Violation:
         order = self._policy.order.value
         reason = f"the valid time does not follow {text_from_duration(last)} in {order}"
-        return Violation(Constraint.ORDER, sample.valid_time, sample.available_time, reason)
+        now = sample.available_time
+        return Violation(Constraint.ORDER, sample.valid_time, now, reason, sample)
 
 
 def delay_violation(sample: Sample[Any], policy: Policy) -> Violation:
     """Return the violation that a sample is, being later than *policy* allows."""
     allowed = text_from_duration(policy.max_delay or 0)
     reason = f"expected a delay of at most {allowed}, found {text_from_duration(sample.delay)}"
-    return Violation(Constraint.DELAY, sample.valid_time, sample.available_time, reason)
+    return Violation(Constraint.DELAY, sample.valid_time, sample.available_time, reason, sample)
 
 
 def _is_repetition(last: Sample[Any], sample: Sample[Any]) -> bool:

@@ -5,9 +5,11 @@ Stream-Based Knowledge Processing Middleware Framework*, section 4.4.5; what eac
 is definition 4.5.11, written down in `dyknow.streams.conformance`.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from enum import Enum
+from typing import Any
 
+from dyknow.streams.sample import Sample
 from dyknow.time import Duration, TimePoint, text_from_duration
 
 __all__ = [
@@ -50,11 +52,60 @@ ANY_UPDATE = Unsampled.ANY_UPDATE
 ANY_CHANGE = Unsampled.ANY_CHANGE
 
 
+EXACTLY = Duration(0)
+"""No deviation from the sample period."""
+
+
 @dataclass(frozen=True, slots=True)
 class SampleEvery:
-    """Consecutive samples are exactly one period of valid time apart; implies strict order."""
+    """Consecutive samples are one period of valid time apart; implies strict order.
+
+    The deviation is that of Heintz, *Semantically Grounded Stream Reasoning Integrated with
+    ROS*, section III. Where a longest period is given the stream counts as less
+    important: under load its period may be any multiple of *period* up to *longest*.
+
+    Attributes:
+        period: The time from one valid time to the next.
+        deviation: By how much that time may be shorter or longer.
+        longest: The longest period that will do under load; None for *period* itself.
+    """
 
     period: Duration
+    deviation: Duration = EXACTLY
+    longest: Duration | None = None
+
+    @property
+    def longest_period(self) -> Duration:
+        """The longest period allowed, *period* where the constraint does not say."""
+        return self.period if self.longest is None else self.longest
+
+    def periods(self) -> range:
+        """Return every period that the stream may have."""
+        return range(self.period, self.longest_period + 1, self.period)
+
+    def allows_step(self, step: int) -> bool:
+        """Return whether the valid times of consecutive samples may be *step* apart."""
+        times = max(1, -(-(step - self.deviation) // self.period))
+        nearest = min(times * self.period, self.longest_period)
+        return abs(step - nearest) <= self.deviation
+
+    def faults(self) -> list[str]:
+        """Return why no stream can be sampled like this, if none can."""
+        faults = []
+        period, deviation = text_from_duration(self.period), text_from_duration(self.deviation)
+        if self.period <= 0:
+            return ["the sample period must be positive"]
+        if not 0 <= self.deviation < self.period:
+            faults.append(
+                f"the deviation must be at least 0 and less than the period of {period}, "
+                f"found {deviation}"
+            )
+        if self.longest is not None and (self.longest < self.period or self.longest % self.period):
+            longest = text_from_duration(self.longest)
+            faults.append(
+                f"the longest period must be a multiple of the period of {period}, found {longest}"
+            )
+        return faults
 
 
 Change = Unsampled | SampleEvery
@@ -113,8 +164,8 @@ class Policy:
 
     def _limits(self) -> list[str]:
         faults = []
-        if self.period is not None and self.period <= 0:
-            faults.append("the sample period must be positive")
+        if isinstance(self.change, SampleEvery):
+            faults += self.change.faults()
         if self.max_delay is not None and self.max_delay < 0:
             faults.append("the maximal delay must not be negative")
         if self.start is not None and self.start < 0:
@@ -133,31 +184,44 @@ class Policy:
             "a finite 'max delay'": self.max_delay is not None,
         }
         missing = [what for what, there in has.items() if not there]
-        return [f"'use most recent' needs {' and '.join(missing)}"] if missing else []
+        faults = [f"'use most recent' needs {' and '.join(missing)}"] if missing else []
+        if isinstance(self.change, SampleEvery) and self.change.deviation:
+            faults.append("'use most recent' puts samples on the grid and allows no deviation")
+        return faults
 
 
 class Constraint(Enum):
-    """The kinds of constraint, as violations name them."""
+    """What a stream can break: a kind of constraint, or one of the rules that all streams keep."""
 
     APPROXIMATION = "approximation"
     CHANGE = "change"
     DELAY = "delay"
     DURATION = "duration"
     ORDER = "order"
+    AVAILABILITY = "availability"
+    ORIGIN = "origin"
+    OMISSION = "omission"
 
 
 @dataclass(frozen=True, slots=True)
 class Violation:
     """A constraint that was not, or could not be, kept at one place of a stream.
 
+    The violations of a stream are also the side stream of what was left out of it against the
+    wish of its policy: nothing is dropped unseen.
+
     Attributes:
-        constraint: The kind of constraint.
+        constraint: What was broken.
         valid_time: Of the sample that breaks the constraint or is missing.
         noticed_at: When it was certain.
         reason: What was expected and what came.
+        sample: The sample that was left out, or that is at fault; None if one is missing.
+        definition: The number of the definition (Heintz 2009) that is broken.
     """
 
     constraint: Constraint
     valid_time: TimePoint
     noticed_at: TimePoint
     reason: str
+    sample: Sample[Any] | None = field(default=None, compare=False)
+    definition: str = field(default="4.5.11", kw_only=True)

@@ -1,5 +1,7 @@
 """One element of a fluent stream: a value, when it held, and when it became available.
 
+Between samples a stream may also say that there is nothing more up to a valid time: a heartbeat.
+
 The definitions are those of Heintz (2009), *DyKnow: A Stream-Based Knowledge Processing
 Middleware Framework*, section 4.3.
 """
@@ -9,7 +11,7 @@ from typing import Final, Generic, TypeVar, final
 
 from dyknow.time import Duration, TimePoint
 
-__all__ = ["NO_SAMPLE", "NO_VALUE", "NoValue", "Sample"]
+__all__ = ["NO_SAMPLE", "NO_VALUE", "Heartbeat", "NoValue", "Sample"]
 
 T = TypeVar("T")
 
@@ -32,7 +34,7 @@ NO_VALUE: Final = NoValue()
 
 @dataclass(slots=True)
 class Sample(Generic[T]):
-    """A value with its two times (definition 4.3.2); immutable by convention.
+    """A value with its two times (definition 4.3.4); immutable by convention.
 
     Not frozen: a frozen dataclass with slots takes three times as long to make, and samples are
     made for every stream and frame.
@@ -51,6 +53,22 @@ class Sample(Generic[T]):
     def delay(self) -> Duration:
         """Available time minus valid time."""
         return Duration(self.available_time - self.valid_time)
+
+
+@dataclass(slots=True)
+class Heartbeat:
+    """The promise that no later sample of a stream has a valid time up to *until*, inclusive.
+
+    With it a silent stream does not hold up those that wait for it. A heartbeat is not a sample:
+    ordinary units never see one.
+
+    Attributes:
+        until: Up to which valid time the stream is complete.
+        available_time: When this was said; samples that were available before it precede it.
+    """
+
+    until: TimePoint
+    available_time: TimePoint
 
 
 NO_SAMPLE: Final = Sample(NO_VALUE, TimePoint(-1), TimePoint(-1))
