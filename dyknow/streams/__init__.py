@@ -10,5 +10,6 @@ Read in this order:
   `refusal`: why a process cannot serve it
 - `adapter`, `ordering`, `sampling`: what makes a stream that keeps it, online
 - `selecting`: fields picked out of values; `merging`: several streams into one that has all
-- `synchronisation`: several streams into one stream of states
+- `state_policy`: how states are made from several streams; `synchronisation`: the unit that makes
+  them
 """

@@ -9,9 +9,10 @@ states there are depends on valid times alone, not on when samples arrive.
 from collections.abc import Sequence
 from typing import Any
 
-from dyknow.streams.policy import Constraint, Violation
+from dyknow.streams.policy import Constraint, Policy, Violation
 from dyknow.streams.process import Reactive
 from dyknow.streams.sample import Sample
+from dyknow.streams.state_policy import StatePolicy
 from dyknow.time import TimePoint, text_from_duration
 
 __all__ = ["Synchronisation"]
@@ -27,8 +28,27 @@ class Synchronisation(Reactive):
     itself before the state is complete, the later sample counts. States come in strict order.
     """
 
-    def __init__(self, names: Sequence[str]) -> None:
-        """Join as many inputs as there are *names*, by which violations call them."""
+    def __init__(
+        self,
+        names: Sequence[str],
+        policy: StatePolicy = StatePolicy(),  # noqa: B008, a frozen value
+        inputs: Sequence[Policy] = (),
+    ) -> None:
+        """Join as many inputs as there are *names*, by which violations call them.
+
+        Args:
+            names: What violations call the inputs.
+            policy: How states are made.
+            inputs: The policies that the input streams keep, in the same order; without them
+                all inputs are taken to be in monotone order.
+
+        Raises:
+            ValueError: The policy asks for what the inputs do not have.
+        """
+        if policy != StatePolicy():
+            raise ValueError("only states of common valid times can be made yet")
+        if inputs and len(inputs) != len(names):
+            raise ValueError(f"expected {len(names)} policies of inputs, found {len(inputs)}")
         self._names = tuple(names)
         self._pending: dict[TimePoint, dict[int, Any]] = {}
         self._reached = [TimePoint(-1)] * len(self._names)
