@@ -1,0 +1,246 @@
+"""What a network looked like at one time, as plain data.
+
+A snapshot says which knowledge processes there are, which streams flow between them under which
+policies, and what they have cost, given, and failed to give so far. It is what an agent that
+reasons about its own processing looks at (Heintz 2009, *DyKnow: A Stream-Based Knowledge
+Processing Middleware Framework*, section 1.3: "introspection" is one of the six requirements).
+A snapshot can be written to a file and read again, and two of them have a difference.
+"""
+
+from dataclasses import dataclass, field, replace
+from enum import StrEnum
+from typing import Final
+
+from pydantic import TypeAdapter, ValidationError
+
+from dyknow.time import SECOND, Duration, TimePoint
+
+__all__ = ["Kind", "ProcessFigures", "Snapshot", "StreamFigures"]
+
+FORMAT: Final = "dyknow-network"
+VERSION: Final = 1
+START: Final = TimePoint(0)
+
+
+class Kind(StrEnum):
+    """What sort of knowledge process stands behind a label."""
+
+    SOURCE = "source"
+    UNIT = "unit"
+    LINK = "link"
+    SYNC = "sync"
+    SELECT = "select"
+    MERGE = "merge"
+    STATE = "state"
+    PROCESS = "process"
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ProcessFigures:
+    """A knowledge process and the stream generator that its samples come out of.
+
+    Attributes:
+        label: The label of the generator.
+        kind: What sort of process it is.
+        text: The process as the specification writes it; empty if there is none.
+        depth: How many processes lie between it and the sources; 0 for a source.
+        policy: What it promises of its output, as KPL writes it; empty if nothing.
+        on_failure: What happens when it fails: `stop` or `end`.
+        calls: How often it was asked or told something.
+        seconds: Processor seconds spent in it.
+        samples: How many samples it produced.
+        heartbeats: How often it said that nothing more comes up to some time.
+        violations: How many violations its input streams have seen.
+        failures: How many failures it was allowed to end with.
+        cached: How many samples its cache holds.
+        cache_limit: How many the cache can hold at most; None if there is no cache.
+    """
+
+    label: str
+    kind: Kind
+    text: str = ""
+    depth: int = 0
+    policy: str = ""
+    on_failure: str = "stop"
+    calls: int = 0
+    seconds: float = 0.0
+    samples: int = 0
+    heartbeats: int = 0
+    violations: int = 0
+    failures: int = 0
+    cached: int = 0
+    cache_limit: int | None = None
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class StreamFigures:
+    """A stream from a generator to one receiver.
+
+    Attributes:
+        provider: The label of the generator.
+        receiver: The label of the process that it feeds, or the name of an output.
+        number: Which input of the receiver it is, from 0; 0 for an output.
+        policy: What the receiver requires, as KPL writes it; empty if nothing.
+        is_output: Whether it leaves the network.
+        samples: How many samples were handed on.
+        rate: Samples per second of valid time; None before there are two.
+        mean_delay: Mean of available time minus valid time, nanoseconds; None before the first.
+        delay_99: What 99 % of the delays do not exceed, nanoseconds.
+        violations: How many violations of the policy there were.
+        late: How many samples were left out because they came too late or out of order.
+    """
+
+    provider: str
+    receiver: str
+    number: int = 0
+    policy: str = ""
+    is_output: bool = False
+    samples: int = 0
+    rate: float | None = None
+    mean_delay: Duration | None = None
+    delay_99: Duration | None = None
+    violations: int = 0
+    late: int = 0
+
+    @property
+    def name(self) -> str:
+        """What violations and recordings call the stream, such as `cars/0`."""
+        return f"{self.receiver}/{self.number}"
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Snapshot:
+    """A network at one time, with what has happened since another.
+
+    Attributes:
+        begin: From when on the figures count, nanoseconds.
+        now: Until when they count.
+        processes: Every knowledge process, inputs before those that use them.
+        streams: Every stream, in the order in which they were asked for.
+        outputs: The names of the outputs that the specification declares and that were built.
+    """
+
+    begin: TimePoint = START
+    now: TimePoint = START
+    processes: tuple[ProcessFigures, ...] = ()
+    streams: tuple[StreamFigures, ...] = ()
+    outputs: tuple[str, ...] = ()
+
+    @property
+    def span(self) -> Duration:
+        """How much time the figures are about."""
+        return Duration(self.now - self.begin)
+
+    @property
+    def seconds(self) -> float:
+        """Processor seconds of all processes together."""
+        return sum(process.seconds for process in self.processes)
+
+    def inputs_of(self, label: str) -> tuple[StreamFigures, ...]:
+        """Return the streams that feed the process *label*, in the order of its inputs."""
+        found = [s for s in self.streams if s.receiver == label and not s.is_output]
+        return tuple(sorted(found, key=lambda stream: stream.number))
+
+    def streams_of(self, label: str) -> tuple[StreamFigures, ...]:
+        """Return the streams that the generator *label* feeds."""
+        return tuple(stream for stream in self.streams if stream.provider == label)
+
+    def since(self, earlier: "Snapshot") -> "Snapshot":
+        """Return what has happened between *earlier* and this snapshot of the same network.
+
+        Counts are differences, and a rate is that of the samples in between. Processes and
+        streams that are gone are left out, new ones count from their beginning, and a 99 % delay
+        is the one since the beginning, for it has no difference.
+
+        Raises:
+            ValueError: *earlier* is later than this one.
+        """
+        if earlier.now > self.now:
+            raise ValueError(f"the earlier snapshot is of {earlier.now}, this one of {self.now}")
+        process_before = {process.label: process for process in earlier.processes}
+        stream_before = {(s.provider, s.receiver, s.number): s for s in earlier.streams}
+        elapsed = (self.now - earlier.now) / SECOND
+        return replace(
+            self,
+            begin=earlier.now,
+            processes=tuple(
+                _process_since(process, process_before.get(process.label))
+                for process in self.processes
+            ),
+            streams=tuple(
+                _stream_since(s, stream_before.get((s.provider, s.receiver, s.number)), elapsed)
+                for s in self.streams
+            ),
+        )
+
+    def to_json(self) -> str:
+        """Write the snapshot as a JSON document; times are nanoseconds."""
+        return _DOCUMENT.dump_json(_Document(network=self), indent=1).decode() + "\n"
+
+    @staticmethod
+    def from_json(text: str | bytes) -> "Snapshot":
+        """Read what `to_json` has written.
+
+        Raises:
+            ValueError: The text is something else, or of another version.
+        """
+        try:
+            document = _DOCUMENT.validate_json(text)
+        except ValidationError as error:
+            fault = error.errors()[0]
+            where = ".".join(map(str, fault["loc"]))
+            message = f"{where}: {fault['msg']}" if where else fault["msg"]
+            raise ValueError(f"not a snapshot of a network: {message}") from error
+        if document.format != FORMAT or document.version != VERSION:
+            found = f"'{document.format}' version {document.version}"
+            raise ValueError(f"expected '{FORMAT}' version {VERSION}, found {found}")
+        return document.network
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class _Document:
+    """A snapshot with what says how to read it."""
+
+    format: str = FORMAT
+    version: int = VERSION
+    network: Snapshot = field(default_factory=Snapshot)
+
+
+_DOCUMENT: Final = TypeAdapter(_Document)
+
+
+def _process_since(process: ProcessFigures, before: ProcessFigures | None) -> ProcessFigures:
+    if before is None:
+        return process
+    return replace(
+        process,
+        calls=process.calls - before.calls,
+        seconds=process.seconds - before.seconds,
+        samples=process.samples - before.samples,
+        heartbeats=process.heartbeats - before.heartbeats,
+        violations=process.violations - before.violations,
+        failures=process.failures - before.failures,
+    )
+
+
+def _stream_since(
+    stream: StreamFigures, before: StreamFigures | None, elapsed: float
+) -> StreamFigures:
+    if before is None:
+        return stream
+    samples = stream.samples - before.samples
+    return replace(
+        stream,
+        samples=samples,
+        rate=samples / elapsed if elapsed else None,
+        mean_delay=_mean_since(stream, before, samples),
+        violations=stream.violations - before.violations,
+        late=stream.late - before.late,
+    )
+
+
+def _mean_since(stream: StreamFigures, before: StreamFigures, samples: int) -> Duration | None:
+    if stream.mean_delay is None or not samples:
+        return None
+    earlier = (before.mean_delay or 0) * before.samples
+    return Duration(round((stream.mean_delay * stream.samples - earlier) / samples))
