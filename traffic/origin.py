@@ -3,17 +3,17 @@
 import hashlib
 import platform
 import shutil
+from collections.abc import Iterable, Sequence
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 
 from pydantic import BaseModel, ConfigDict
 
-from traffic.bundled import data_folder
 from traffic.request import RunRequest
 from traffic.scenarios import Scenario
 from traffic.sumo.opening import network_of
 
-__all__ = ["Origin", "origin_of", "write_origin"]
+__all__ = ["Origin", "digest_of", "origin_of", "versions", "write_origin"]
 
 _DISTRIBUTION = "dyknow-traffic"
 _OTHERS = ("libsumo", "numpy", "opencv-python-headless", "scipy", "shapely")
@@ -29,6 +29,7 @@ class Origin(BaseModel):
         scenario: As it was run; durations in nanoseconds.
         network: Path of the compiled network.
         network_sha256: Digest of that file.
+        files_sha256: Digests of the further files that were read, such as chronicles, by path.
     """
 
     model_config = ConfigDict(frozen=True)
@@ -39,39 +40,54 @@ class Origin(BaseModel):
     scenario: Scenario
     network: Path
     network_sha256: str
+    files_sha256: dict[str, str] = {}
 
 
-def origin_of(request: RunRequest) -> Origin:
-    """Return what a run of *request* is made from."""
+def origin_of(request: RunRequest, files: Iterable[Path] = ()) -> Origin:
+    """Return what a run of *request*, which reads *files*, is made from."""
     network = network_of(request.scenario)
     return Origin(
-        versions={
-            _DISTRIBUTION: _version(_DISTRIBUTION),
-            "python": platform.python_version(),
-            **{name: _version(name) for name in _OTHERS},
-        },
+        versions=versions(),
         system=f"{platform.system()} {platform.machine()}",
         request={
             "view": str(request.view),
             "sample_period_ns": request.sample_period,
             "position_noise": request.position_noise,
             "seed": request.seed,
+            "specification": None if request.specification is None else str(request.specification),
         },
         scenario=request.scenario,
-        network=network,
-        network_sha256=hashlib.sha256(network.read_bytes()).hexdigest(),
+        network=network.resolve(),
+        network_sha256=digest_of(network),
+        files_sha256={str(path): digest_of(path) for path in files},
     )
 
 
-def write_origin(request: RunRequest, folder: Path) -> None:
-    """Write `origin.json` into *folder*, and copies of the specification and the chronicles."""
-    text = origin_of(request).model_dump_json(indent=1)
+def versions() -> dict[str, str]:
+    """Return the versions of this program, of Python, and of what results may depend on."""
+    return {
+        _DISTRIBUTION: _version(_DISTRIBUTION),
+        "python": platform.python_version(),
+        **{name: _version(name) for name in _OTHERS},
+    }
+
+
+def digest_of(path: Path) -> str:
+    """Return the SHA-256 of the file at *path*."""
+    return hashlib.sha256(path.read_bytes()).hexdigest()
+
+
+def write_origin(origin: Origin, files: Sequence[Path], folder: Path) -> None:
+    """Write `origin.json` into *folder*, and copies of *files* as its `specification`."""
+    text = origin.model_dump_json(indent=1)
     (folder / "origin.json").write_text(f"{text}\n", encoding="utf-8")
     copies = folder / "specification"
     copies.mkdir()
-    for kind in ("specifications", "chronicles"):
-        for path in sorted((data_folder() / kind).iterdir()):
-            shutil.copyfile(path, copies / path.name)
+    names: set[str] = set()
+    for number, path in enumerate(files, start=1):
+        name = path.name if path.name not in names else f"{number}-{path.name}"
+        names.add(name)
+        shutil.copyfile(path, copies / name)
 
 
 def _version(distribution: str) -> str:

@@ -9,7 +9,10 @@ from dyknow.time import MILLISECOND, Duration, duration_from_text
 from traffic.errors import RequestError
 from traffic.scenarios import CameraSettings, Scenario, find_scenario, scenario_of_configuration
 
-__all__ = ["RunRequest", "View"]
+__all__ = ["DEFAULT_PERIOD", "RecordingRequest", "RunRequest", "View", "labels_from"]
+
+DEFAULT_PERIOD = Duration(100 * MILLISECOND)
+"""Of the reasoning."""
 
 _FRAME_PERIOD = Duration(40 * MILLISECOND)
 _LONGEST_STEP = 100
@@ -26,6 +29,46 @@ class View(StrEnum):
     TRUTH = "truth"
 
 
+@dataclass(frozen=True, slots=True)
+class RecordingRequest:
+    """What a user wants to have recorded.
+
+    Attributes:
+        path: The file to write.
+        streams: Labels of the streams that are wanted; None for all but images.
+        images: Whether images are wanted as well, to be looked at.
+    """
+
+    path: Path
+    streams: tuple[str, ...] | None = None
+    images: bool = False
+
+    @classmethod
+    def from_texts(
+        cls,
+        *,
+        record: Path | None = None,
+        streams: str | None = None,
+        record_images: bool = False,
+    ) -> "RecordingRequest | None":
+        """Read what a user wrote on the command line; None if nothing is to be recorded.
+
+        Raises:
+            RequestError: An option is impossible, or has no meaning without `--record`.
+        """
+        if record is None:
+            for option, value in (("--streams", streams), ("--record-images", record_images)):
+                if value:
+                    fault = "nothing, because it only has a meaning with --record"
+                    raise RequestError(option, fault, value)
+            return None
+        _check_new_file(record, "--record", ".mcap")
+        labels = None
+        if streams is not None:
+            labels = labels_from(streams, "--streams")
+        return cls(record, labels, record_images)
+
+
 @dataclass(frozen=True, slots=True, kw_only=True)
 class RunRequest:
     """What a user asks of a run.
@@ -38,6 +81,9 @@ class RunRequest:
         seed: Of everything random.
         out: Folder of the run; None for a new one in `runs`.
         overlay: Video of what is believed, if wanted.
+        recording: The streams in a file, if wanted.
+        specification: File of the network of processes; None for the bundled one.
+        real_time: Whether to keep to the clock on the wall.
     """
 
     scenario: Scenario
@@ -47,6 +93,9 @@ class RunRequest:
     seed: int
     out: Path | None
     overlay: Path | None
+    recording: RecordingRequest | None = None
+    specification: Path | None = None
+    real_time: bool = False
 
     @classmethod
     def from_texts(  # noqa: PLR0913, one for each option of the command
@@ -62,6 +111,11 @@ class RunRequest:
         duration: str | None = None,
         out: Path | None = None,
         overlay: Path | None = None,
+        record: Path | None = None,
+        streams: str | None = None,
+        record_images: bool = False,
+        specification: Path | None = None,
+        real_time: bool = False,
     ) -> "RunRequest":
         """Read what a user wrote on the command line.
 
@@ -73,6 +127,7 @@ class RunRequest:
         if seen is View.TRUTH:
             _refuse(look_at, "--look-at", View.VISION)
             _refuse(overlay, "--overlay", View.VISION)
+            _refuse(record_images, "--record-images", View.VISION)
         else:
             _refuse(position_noise, "--position-noise", View.TRUTH)
         if not 0 <= position_noise < math.inf:
@@ -80,7 +135,10 @@ class RunRequest:
                 "--position-noise", "a number of metres, at least 0", position_noise
             )
         if overlay is not None:
-            _check_film(overlay)
+            _check_new_file(overlay, "--overlay", ".mp4")
+        recording = RecordingRequest.from_texts(
+            record=record, streams=streams, record_images=record_images
+        )
         if seed < 0:
             raise RequestError("--seed", "a number of at least 0", seed)
         period = _period(sample_period, seen)
@@ -101,7 +159,29 @@ class RunRequest:
             seed=seed,
             out=out,
             overlay=overlay,
+            recording=recording,
+            specification=specification,
+            real_time=real_time,
         )
+
+
+def labels_from(text: str, option: str) -> tuple[str, ...]:
+    """Return the labels in *text*, which are separated by commas; those in brackets are not.
+
+    Raises:
+        RequestError: There is none.
+    """
+    parts, depth = [""], 0
+    for character in text:
+        depth += (character in "([") - (character in ")]")
+        if character == "," and depth == 0:
+            parts.append("")
+        else:
+            parts[-1] += character
+    labels = [label.strip() for label in parts if label.strip()]
+    if not labels:
+        raise RequestError(option, "labels of streams, separated by commas", text)
+    return tuple(dict.fromkeys(labels))
 
 
 def _view(text: str) -> View:
@@ -118,13 +198,13 @@ def _refuse(value: object, option: str, view: View) -> None:
         )
 
 
-def _check_film(path: Path) -> None:
-    if path.suffix != ".mp4":
-        raise RequestError("--overlay", "a name that ends in .mp4", path)
+def _check_new_file(path: Path, option: str, ending: str) -> None:
+    if path.suffix != ending:
+        raise RequestError(option, f"a name that ends in {ending}", path)
     if path.exists():
-        raise RequestError("--overlay", "a file that does not exist yet", path)
+        raise RequestError(option, "a file that does not exist yet", path)
     if not path.parent.is_dir():
-        raise RequestError("--overlay", "a file in a folder that exists", path)
+        raise RequestError(option, "a file in a folder that exists", path)
 
 
 def _scenario(name: str | None, sumocfg: Path | None) -> Scenario:

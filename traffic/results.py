@@ -15,9 +15,13 @@ from pydantic import BaseModel, ConfigDict, ValidationError
 from traffic.errors import ResultError
 
 __all__ = [
+    "Lateness",
     "Manoeuvre",
+    "RecognitionResult",
+    "Replay",
     "RunResult",
     "Score",
+    "StreamDifference",
     "Timing",
     "new_folder",
     "read_result",
@@ -98,6 +102,20 @@ class Score(_Value):
     left_out: int
 
 
+class Lateness(_Value):
+    """How a run kept to the clock on the wall.
+
+    Attributes:
+        max_ms: The most that the work of an instant began after its time, milliseconds.
+        mean_ms: Over all instants.
+        late_share: Share of the instants whose work began late.
+    """
+
+    max_ms: float
+    mean_ms: float
+    late_share: float
+
+
 class Timing(_Value):
     """How long a run took.
 
@@ -106,12 +124,49 @@ class Timing(_Value):
         wall_s: Seconds on the clock, from the first step to the last.
         real_time_factor: Simulated seconds per second on the clock.
         stages: CPU seconds of each process of the network.
+        lateness: In real time, how late it was; None if it ran as fast as possible.
     """
 
     simulated_s: float
     wall_s: float
     real_time_factor: float
     stages: dict[str, float]
+    lateness: Lateness | None = None
+
+
+class StreamDifference(_Value):
+    """The first place at which a stream came out otherwise than it was recorded.
+
+    Attributes:
+        stream: The topic of the stream in the recording.
+        at: Available time of the sample there, milliseconds.
+        what: What was recorded there and what came.
+    """
+
+    stream: str
+    at: float
+    what: str
+
+
+class Replay(_Value):
+    """How a replay compares with what was recorded.
+
+    Attributes:
+        recording: The file.
+        changes: What is not as it was when that was recorded, a line each: the specification,
+            files, versions of libraries.
+        taken: Labels of the streams that were taken from the recording.
+        compared: Number of streams that were computed and had been recorded.
+        identical: Number of these that came out byte by byte as they were recorded.
+        differences: The first difference of each of the others.
+    """
+
+    recording: str
+    changes: list[str]
+    taken: list[str]
+    compared: int
+    identical: int
+    differences: list[StreamDifference]
 
 
 class RunResult(_Value):
@@ -122,8 +177,10 @@ class RunResult(_Value):
         settings: What was asked for: view, seed, noise, period, duration.
         recognitions: In order of time.
         missed: True manoeuvres in view that were not recognised.
-        score: By kind of manoeuvre.
+        score: By kind of manoeuvre; empty if no truth is known.
         timing: How long it took.
+        violations: How many violations of policies each stream had; without those that had none.
+        replay: If the run was a replay, how it compares with what was recorded.
     """
 
     scenario: str
@@ -132,6 +189,8 @@ class RunResult(_Value):
     missed: list[Manoeuvre]
     score: dict[str, Score]
     timing: Timing
+    violations: dict[str, int] = {}
+    replay: Replay | None = None
 
 
 @contextmanager

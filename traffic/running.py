@@ -1,36 +1,62 @@
 """One run: a scenario, simulated, watched, recognised, scored, and written to a folder."""
 
 import time
-from collections.abc import Callable, Iterator
+from collections import Counter
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
+from dataclasses import dataclass
 from pathlib import Path
 
-import numpy as np
-
 from chronicles.events import Recognition
+from dyknow.kpl.names import Declarations
+from dyknow.kpl.syntax import Specification
+from dyknow.runtime.subscriptions import StreamViolation
 from dyknow.streams.sample import Sample
 from dyknow.streams.table import Table
-from dyknow.time import MILLISECOND, SECOND, TimePoint
+from dyknow.time import MILLISECOND, SECOND, Duration, TimePoint
 from networks.reading import read_road_map
 from networks.roads import RoadMap
 from perception.camera import Camera
-from traffic.origin import write_origin
+from traffic.errors import RequestError
+from traffic.origin import origin_of, write_origin
 from traffic.overlaying import Overlay
-from traffic.request import RunRequest, View
+from traffic.request import DEFAULT_PERIOD, RunRequest, View
 from traffic.results import RunResult, Timing, new_folder, run_folder, write_result
-from traffic.scoring.score import Scorer
+from traffic.scoring.score import Scorer, Verdict, unjudged
 from traffic.sumo.opening import network_of, open_simulation
 from traffic.sumo.simulation import Frame, Simulation
-from traffic.system import MonitoringSystem
+from traffic.system import (
+    MonitoringSystem,
+    bundled_specification,
+    outputs_of,
+    outputs_of_sort,
+    read_specification,
+)
 from traffic.world import World, camera_of, generators_of
 
-__all__ = ["run_scenario"]
+__all__ = ["OnProgress", "Told", "Watch", "run_scenario"]
 
-_RECOGNITIONS = ("recognised_turns", "recognised_overtakes")
+_CARS = "cars"
+_RECOGNITIONS = "recognitions"
 _IMAGES = ("colour_images", "thermal_images")
 
 OnProgress = Callable[[float, float], None]
 """Told the seconds simulated so far and the seconds in all."""
+
+
+@dataclass(frozen=True, slots=True)
+class Told:
+    """What a result says of a run that the run itself does not find out.
+
+    Attributes:
+        scenario: Name of the scenario.
+        settings: What was asked for.
+        duration: How long the run is to be.
+    """
+
+    scenario: str
+    settings: Mapping[str, str | int | float | None]
+    duration: Duration
 
 
 def run_scenario(request: RunRequest, on_progress: OnProgress) -> tuple[RunResult, Path]:
@@ -40,7 +66,9 @@ def run_scenario(request: RunRequest, on_progress: OnProgress) -> tuple[RunResul
         TrafficError: The folder exists or cannot be written, the simulator gave up, or the
             scenario has a fault that only its network shows.
         NetworkError: The network cannot be read.
+        SpecificationErrors: The specification that was asked for has faults.
     """
+    specification = read_specification(request.specification)
     road_map = read_road_map(network_of(request.scenario))
     camera = camera_of(request.scenario.camera, road_map) if request.view is View.VISION else None
     traffic, sensors = generators_of(request.seed)
@@ -49,16 +77,108 @@ def run_scenario(request: RunRequest, on_progress: OnProgress) -> tuple[RunResul
         run_folder(path) as folder,
         open_simulation(request.scenario, folder / "sumo", traffic) as simulation,
     ):
-        write_origin(request, folder)
-        run = _Run(request, road_map, simulation, camera, sensors)
-        with _film(request, camera, run):
-            result = run.complete(on_progress)
+        scorer = _scorer(road_map, simulation, camera)
+        vehicles = _Vehicles(simulation, scorer.observe_frame)
+        world = World(road_map, vehicles, camera, sensors)
+        system = _system(request, specification, world)
+        files = (request.specification or bundled_specification(), *system.files)
+        write_origin(origin_of(request, system.files), files, folder)
+        watch = Watch(system, scorer)
+        with _film(request, camera, watch):
+            result = watch.complete(_told(request), on_progress)
         write_result(result, folder)
     return result, path
 
 
+class Watch:
+    """A system at work: what it recognises is collected, and scored if the truth is known.
+
+    Args:
+        system: The system, before it runs.
+        scorer: Knows the truth, from outside; None if nothing does.
+    """
+
+    def __init__(self, system: MonitoringSystem, scorer: Scorer | None) -> None:
+        self._network = system.network
+        self._scorer = scorer if _CARS in outputs_of_sort(system.specification, _CARS) else None
+        self._recognitions: list[Recognition] = []
+        self._violations: Counter[str] = Counter()
+        told = set(outputs_of_sort(system.specification, _RECOGNITIONS))
+        self._outputs = [name for name in self._network.outputs if name in told]
+        if self._scorer is not None:
+            self._network.subscribe(_CARS, self._scorer.observe_cars)
+        for output in self._outputs:
+            self._network.subscribe(output, self._note)
+        self._network.kernel.subscribe_violations(self._count)
+
+    def show(self, overlay: Overlay) -> None:
+        """Let *overlay* receive what it shows.
+
+        Raises:
+            RequestError: The system has no cars.
+        """
+        if _CARS not in self._network.outputs:
+            expected = f"a specification with an output stream '{_CARS}'"
+            raise RequestError("--overlay", expected, "none")
+        colour, thermal = _IMAGES
+        self._network.subscribe(colour, overlay.receive_colour)
+        self._network.subscribe(thermal, overlay.receive_thermal)
+        self._network.subscribe(_CARS, overlay.receive_cars)
+        for output in self._outputs:
+            self._network.subscribe(output, overlay.receive_recognitions)
+
+    def complete(
+        self,
+        told: Told,
+        on_progress: OnProgress,
+        on_time: Callable[[TimePoint], None] | None = None,
+    ) -> RunResult:
+        """Run to the end and judge what was recognised.
+
+        *on_time* is told each instant before its work begins.
+        """
+        total = told.duration / SECOND
+
+        def tell(now: TimePoint) -> None:
+            if on_time is not None:
+                on_time(now)
+            on_progress(now / SECOND, total)
+
+        kernel = self._network.kernel
+        began = time.perf_counter()
+        kernel.run(TimePoint(told.duration), tell)
+        wall = time.perf_counter() - began
+        verdict = self._verdict()
+        return RunResult(
+            scenario=told.scenario,
+            settings=dict(told.settings),
+            recognitions=verdict.recognitions,
+            missed=verdict.missed,
+            score=verdict.score,
+            timing=Timing(
+                simulated_s=total,
+                wall_s=wall,
+                real_time_factor=total / wall,
+                stages={str(label): each.seconds for label, each in kernel.accounts.items()},
+            ),
+            violations=dict(self._violations),
+        )
+
+    def _verdict(self) -> Verdict:
+        self._recognitions.sort(key=lambda recognition: (recognition.begin, recognition.end))
+        if self._scorer is None:
+            return unjudged(self._recognitions)
+        return self._scorer.judge(self._recognitions)
+
+    def _note(self, sample: Sample[tuple[Recognition, ...]]) -> None:
+        self._recognitions.extend(sample.value)
+
+    def _count(self, violation: StreamViolation) -> None:
+        self._violations[f"{violation.provider} → {violation.receiver}"] += 1
+
+
 @contextmanager
-def _film(request: RunRequest, camera: Camera | None, run: "_Run") -> Iterator[None]:
+def _film(request: RunRequest, camera: Camera | None, watch: Watch) -> Iterator[None]:
     """Film what is believed while the block lasts, if that was asked for.
 
     The film is made beside its place, so that it turns out at once if nothing can be written.
@@ -69,75 +189,11 @@ def _film(request: RunRequest, camera: Camera | None, run: "_Run") -> Iterator[N
     overlay = Overlay(request.overlay.with_suffix(".partial.mp4"), camera)
     kept: Path | None = None
     try:
-        run.show(overlay)
+        watch.show(overlay)
         yield
         kept = request.overlay
     finally:
         overlay.close(kept)
-
-
-class _Run:
-    """The parts of one run, connected."""
-
-    def __init__(
-        self,
-        request: RunRequest,
-        road_map: RoadMap,
-        simulation: Simulation,
-        camera: Camera | None,
-        sensors: np.random.Generator,
-    ) -> None:
-        self._request = request
-        self._recognitions: list[Recognition] = []
-        footprint = camera.footprint() if camera is not None else None
-        self._scorer = Scorer(road_map, simulation, footprint)
-        vehicles = _Vehicles(simulation, self._scorer.observe_frame)
-        world = World(road_map, vehicles, camera, sensors)
-        outputs = ("cars", *_RECOGNITIONS)
-        images = _IMAGES if request.overlay is not None else ()
-        self._system = MonitoringSystem(world, _parameters(request), (*outputs, *images))
-        network = self._system.network
-        network.subscribe("cars", self._scorer.observe_cars)
-        for output in _RECOGNITIONS:
-            network.subscribe(output, self._note)
-
-    def show(self, overlay: Overlay) -> None:
-        """Let *overlay* receive what it shows."""
-        network = self._system.network
-        colour, thermal = _IMAGES
-        network.subscribe(colour, overlay.receive_colour)
-        network.subscribe(thermal, overlay.receive_thermal)
-        network.subscribe("cars", overlay.receive_cars)
-        for output in _RECOGNITIONS:
-            network.subscribe(output, overlay.receive_recognitions)
-
-    def complete(self, on_progress: OnProgress) -> RunResult:
-        """Run to the end and judge what was recognised."""
-        request = self._request
-        duration = request.scenario.duration
-        kernel = self._system.network.kernel
-        began = time.perf_counter()
-        kernel.run(TimePoint(duration), lambda now: on_progress(now / SECOND, duration / SECOND))
-        wall = time.perf_counter() - began
-        self._recognitions.sort(key=lambda recognition: (recognition.begin, recognition.end))
-        verdict = self._scorer.judge(self._recognitions)
-        stages = {str(label): account.seconds for label, account in kernel.accounts.items()}
-        return RunResult(
-            scenario=request.scenario.name,
-            settings=_settings(request),
-            recognitions=verdict.recognitions,
-            missed=verdict.missed,
-            score=verdict.score,
-            timing=Timing(
-                simulated_s=duration / SECOND,
-                wall_s=wall,
-                real_time_factor=duration / SECOND / wall,
-                stages=stages,
-            ),
-        )
-
-    def _note(self, sample: Sample[tuple[Recognition, ...]]) -> None:
-        self._recognitions.extend(sample.value)
 
 
 class _Vehicles:
@@ -154,20 +210,49 @@ class _Vehicles:
             yield Sample(frame.vehicles, frame.time, frame.time)
 
 
-def _parameters(request: RunRequest) -> dict[str, object]:
-    return {
+def _scorer(road_map: RoadMap, simulation: Simulation, camera: Camera | None) -> Scorer:
+    return Scorer(road_map, simulation, camera.footprint() if camera is not None else None)
+
+
+def _system(request: RunRequest, specification: Specification, world: World) -> MonitoringSystem:
+    outputs = outputs_of(specification)
+    if request.overlay is not None:
+        outputs += tuple(name for name in _IMAGES if name not in outputs)
+    return MonitoringSystem(
+        world, _parameters(request, specification), outputs, specification=specification
+    )
+
+
+def _parameters(request: RunRequest, specification: Specification) -> dict[str, object]:
+    """Return values for the parameters of the specification.
+
+    Raises:
+        RequestError: An option sets a parameter that the specification does not have.
+    """
+    declared = Declarations(specification).parameters
+    period, noise = request.sample_period, request.position_noise
+    for name, option, is_set in (
+        ("sample_period", "--sample-period", period != DEFAULT_PERIOD),
+        ("position_noise", "--position-noise", noise != 0),
+    ):
+        if is_set and name not in declared:
+            expected = f"a specification with the parameter '{name}'"
+            raise RequestError(option, expected, "none")
+    values = {
         "view": str(request.view),
-        "sample_period": request.sample_period / MILLISECOND,
-        "position_noise": request.position_noise,
+        "sample_period": period / MILLISECOND,
+        "position_noise": noise,
     }
+    return {name: value for name, value in values.items() if name in declared}
 
 
-def _settings(request: RunRequest) -> dict[str, str | int | float | None]:
+def _told(request: RunRequest) -> Told:
     is_truth = request.view is View.TRUTH
-    return {
+    settings: dict[str, str | int | float | None] = {
         "view": str(request.view),
         "seed": request.seed,
         "sample period ms": request.sample_period / MILLISECOND,
         "position noise m": request.position_noise if is_truth else None,
         "duration s": request.scenario.duration / SECOND,
     }
+    return Told(request.scenario.name, settings, request.scenario.duration)

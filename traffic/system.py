@@ -23,15 +23,28 @@ from chronicles.models import models_from_chronicles
 from chronicles.parser import read_chronicles
 from chronicles.processes import ChronicleRecogniser
 from dyknow.kpl.check import check
+from dyknow.kpl.names import descendants
 from dyknow.kpl.parser import parse_specification
 from dyknow.kpl.plan import Implementations, Network, build_network
-from dyknow.kpl.syntax import Specification
+from dyknow.kpl.printer import text_from
+from dyknow.kpl.syntax import (
+    GeneratorDeclaration,
+    Label,
+    Link,
+    SourceDeclaration,
+    SourceInstance,
+    Specification,
+    StreamDeclaration,
+    UnitDeclaration,
+    UnitInstance,
+)
 from dyknow.mtl.syntax import Formula
 from dyknow.streams.process import Source
 from dyknow.streams.sample import Sample
 from dyknow.time import Duration, TimePoint
 from networks.markings import MarkingKind
 from networks.roads import RoadMap
+from perception.camera import Camera
 from perception.painting import GroundPainter
 from perception.processes import ColourCamera, ThermalCamera, VisionPercepts, make_painter
 from perception.scene import Ground, build_surroundings
@@ -50,12 +63,16 @@ __all__ = [
     "Made",
     "MonitoringSystem",
     "bundled_specification",
+    "image_labels",
     "implementations_of",
+    "outputs_of",
+    "outputs_of_sort",
     "read_specification",
     "specification_from",
 ]
 
 _SPECIFICATION = "monitoring.kpl"
+_IMAGE_SORTS = frozenset({"colour_image", "thermal_image"})
 
 
 class MonitoringSystem:
@@ -168,6 +185,12 @@ class _Links:
         return units[name]()
 
 
+def _camera_pose(camera: Camera | None) -> Source:
+    if camera is None:
+        raise ValueError("there is no camera; expected the view 'vision'")
+    return _Constant(camera)
+
+
 class _Constant:
     """A source of one sample at time 0."""
 
@@ -201,6 +224,34 @@ def read_specification(path: Path | None = None) -> Specification:
     return specification_from(text, str(path))
 
 
+def image_labels(specification: Specification) -> frozenset[str]:
+    """Return the labels of the generators of images, and of states of images."""
+    sorts = _Sorts(specification)
+    return frozenset(
+        text_from(generator.label)
+        for generator in sorts.generators
+        if sorts.of(generator.process) & _IMAGE_SORTS
+    )
+
+
+def outputs_of(specification: Specification) -> tuple[str, ...]:
+    """Return the names of the output streams of *specification*, without those of images."""
+    sorts = _Sorts(specification)
+    return tuple(
+        output.name.text
+        for output in sorts.outputs
+        if not sorts.of(output.stream.provider) & _IMAGE_SORTS
+    )
+
+
+def outputs_of_sort(specification: Specification, sort: str) -> tuple[str, ...]:
+    """Return the names of the output streams of *specification* that have this sort alone."""
+    sorts = _Sorts(specification)
+    return tuple(
+        output.name.text for output in sorts.outputs if sorts.of(output.stream.provider) == {sort}
+    )
+
+
 def specification_from(text: str, name: str) -> Specification:
     """Return the specification that *text* says, checked; *name* is for messages.
 
@@ -212,10 +263,42 @@ def specification_from(text: str, name: str) -> Specification:
     return specification
 
 
+class _Sorts:
+    """Which sorts of values flow where, as far as a specification says so by its own names."""
+
+    def __init__(self, specification: Specification) -> None:
+        declarations = specification.declarations
+        self.generators = [each for each in declarations if isinstance(each, GeneratorDeclaration)]
+        self.outputs = [each for each in declarations if isinstance(each, StreamDeclaration)]
+        self._by_process = {
+            each.name.text: each.sort.name
+            for each in declarations
+            if isinstance(each, SourceDeclaration | UnitDeclaration)
+        }
+
+    def of(self, node: Any, seen: frozenset[str] = frozenset()) -> frozenset[str]:
+        """Return the sorts of what a process or a provider gives, or of what that is made of."""
+        match node:
+            case SourceInstance(name) | UnitInstance(name) | Link(_, name):
+                return frozenset({self._by_process.get(name.text, "any")})
+            case Label(feature):
+                if feature.text in seen:
+                    return frozenset()
+                found = (
+                    self.of(each.process, seen | {feature.text})
+                    for each in self.generators
+                    if each.label.feature == feature
+                )
+            case _:
+                labels = (each for each in descendants(node) if isinstance(each, Label))
+                found = (self.of(label, seen) for label in labels)
+        return frozenset().union(*found)
+
+
 def _sources(world: World) -> dict[str, Any]:
     return {
         "vehicles": lambda: world.vehicles,
-        "camera_pose": lambda: _Constant(world.camera),
+        "camera_pose": lambda: _camera_pose(world.camera),
         "link_turns": lambda: LinkTurns(world.road_map),
     }
 

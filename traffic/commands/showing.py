@@ -11,22 +11,23 @@ from rich.progress import BarColumn, Progress, TextColumn, TimeRemainingColumn
 from rich.table import Table
 
 from traffic.maps import MapSummary
-from traffic.results import RecognitionResult, RunResult, Score
+from traffic.results import RecognitionResult, Replay, RunResult, Score
 
 __all__ = ["progress", "show_network", "show_result", "show_scores"]
 
 _VERDICTS = {True: "[green]yes[/]", False: "[red]no[/]", None: "[dim]not in view[/]"}
+_UNKNOWN = "[dim]unknown[/]"
 
 
 @contextmanager
-def progress() -> Iterator[Callable[[float, float], None]]:
+def progress(doing: str = "simulating") -> Iterator[Callable[[float, float], None]]:
     """Give a function to call with seconds done and seconds in all, shown on a terminal."""
     columns = (TextColumn("{task.description}"), BarColumn(), TextColumn("{task.fields[at]}"))
     console = Console(stderr=True)
     with Progress(
         *columns, TimeRemainingColumn(), console=console, disable=not sys.stderr.isatty()
     ) as bar:
-        task = bar.add_task("simulating", at="")
+        task = bar.add_task(doing, at="")
 
         def on_progress(done: float, total: float) -> None:
             bar.update(task, completed=done, total=total, at=f"{done:.0f} of {total:.0f} s")
@@ -35,15 +36,27 @@ def progress() -> Iterator[Callable[[float, float], None]]:
 
 
 def show_result(result: RunResult) -> None:
-    """Print the recognitions, what was missed, the score and the timing as tables."""
+    """Print the recognitions, what was missed, the score and the timing as tables.
+
+    Of a replay it is said before what has changed since the recording, and last how the streams
+    compare.
+    """
     console = Console()
     settings = ", ".join(f"{k} {v}" for k, v in result.settings.items() if v is not None)
     console.print(f"[bold]{escape(result.scenario)}[/]: {escape(settings)}", highlight=False)
+    for change in result.replay.changes if result.replay is not None else ():
+        console.print(f"changed since the recording: {escape(change)}", highlight=False)
     console.print(_recognitions(result))
     if result.missed:
         console.print(_missed(result))
-    console.print(_scores({"": result.score}))
+    if result.score:
+        console.print(_scores({"": result.score}))
     console.print(_timing(result))
+    if result.violations:
+        console.print(_violations(result), highlight=False)
+    if result.replay is not None:
+        for line in _comparison(result.replay):
+            console.print(line, highlight=False)
 
 
 def show_scores(score_by_run: Mapping[str, Mapping[str, Score]]) -> None:
@@ -88,7 +101,7 @@ def _recognitions(result: RunResult) -> Table:
             escape(recognition.chronicle.replace("_", " ")),
             _who(recognition),
             _where(recognition),
-            _VERDICTS[recognition.agrees],
+            _VERDICTS[recognition.agrees] if result.score else _UNKNOWN,
         )
     return table
 
@@ -142,7 +155,31 @@ def _timing(result: RunResult) -> Table:
         f"{timing.real_time_factor:.1f} times real time"
     )
     table = Table("stage", "CPU s", "share", box=SIMPLE_HEAD, title=title)
+    if timing.lateness is not None:
+        late = timing.lateness
+        table.caption = (
+            f"late by {late.mean_ms:.1f} ms on average, {late.max_ms:.1f} ms at most; "
+            f"{late.late_share:.1%} of the instants began late"
+        )
     total = sum(timing.stages.values()) or 1.0
     for stage, spent in sorted(timing.stages.items(), key=lambda item: -item[1]):
         table.add_row(escape(stage), f"{spent:.2f}", f"{spent / total:.0%}")
     return table
+
+
+def _violations(result: RunResult) -> str:
+    total = sum(result.violations.values())
+    streams = ", ".join(f"{escape(name)} {count}" for name, count in result.violations.items())
+    return f"{total} violations of policies: {streams}"
+
+
+def _comparison(replay: Replay) -> Iterator[str]:
+    for difference in replay.differences:
+        at = f"{difference.at:g} ms"
+        yield f"[red]differs[/] {escape(difference.stream)} at {at}: {escape(difference.what)}"
+    others = replay.compared - replay.identical
+    streams = "stream" if replay.compared == 1 else "streams"
+    if others:
+        yield f"{replay.identical} of {replay.compared} {streams} identical"
+    else:
+        yield f"{replay.compared} {streams} identical"

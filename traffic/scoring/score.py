@@ -19,7 +19,7 @@ from traffic.truth.ground_truth import GroundTruth
 from traffic.truth.overtakes import TrueOvertake
 from traffic.truth.turns import TrueTurn
 
-__all__ = ["Scorer", "Verdict"]
+__all__ = ["Scorer", "Verdict", "unjudged"]
 
 _MARGIN = Duration(2 * SECOND)
 """A manoeuvre has been seen if its vehicles were in view from so long before it to so long after:
@@ -142,17 +142,30 @@ class Scorer:
     ) -> RecognitionResult:
         known = vehicles if vehicles is not None else {}
         names = {name: self._names[one] for name, one in known.items()}
-        return RecognitionResult(
-            chronicle=recognition.chronicle,
-            arguments=recognition.arguments,
-            times={name: at / MILLISECOND for name, at in recognition.instants.items()},
-            begin=recognition.begin / MILLISECOND,
-            end=recognition.end / MILLISECOND,
-            recognised_at=recognition.recognised_at / MILLISECOND,
-            events=[json_from_event(event) for event in recognition.events],
-            truth=names or None,
-            agrees=agrees,
-        )
+        return _result(recognition, names or None, agrees)
+
+
+def unjudged(recognitions: Sequence[Recognition]) -> Verdict:
+    """Return what is said of *recognitions* when no truth is known."""
+    return Verdict([_result(recognition, None, None) for recognition in recognitions], [], {})
+
+
+def _result(
+    recognition: Recognition,
+    truth: dict[str, str] | None,
+    agrees: bool | None,  # noqa: FBT001, a value of the result
+) -> RecognitionResult:
+    return RecognitionResult(
+        chronicle=recognition.chronicle,
+        arguments=recognition.arguments,
+        times={name: at / MILLISECOND for name, at in recognition.instants.items()},
+        begin=recognition.begin / MILLISECOND,
+        end=recognition.end / MILLISECOND,
+        recognised_at=recognition.recognised_at / MILLISECOND,
+        events=[json_from_event(event) for event in recognition.events],
+        truth=truth,
+        agrees=agrees,
+    )
 
 
 def _claim(recognition: Recognition, vehicles: dict[str, int] | None) -> Episode:
