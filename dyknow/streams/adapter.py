@@ -13,11 +13,12 @@ from typing import Any, Protocol, runtime_checkable
 
 from dyknow.streams.ordering import Filter
 from dyknow.streams.policy import Approximation, Policy, Violation
-from dyknow.streams.sample import Sample
+from dyknow.streams.process import Element
+from dyknow.streams.sample import Heartbeat, Sample
 from dyknow.streams.sampling import MostRecentSampler, Sampler
-from dyknow.time import TimePoint
+from dyknow.time import Duration, TimePoint
 
-__all__ = ["Adapter", "ReportsViolations", "adapter_for"]
+__all__ = ["Adapter", "ReportsViolations", "VariesPeriod", "adapter_for"]
 
 START = TimePoint(0)
 
@@ -40,11 +41,35 @@ class Adapter(ReportsViolations, Protocol):
     def push(self, sample: Sample[Any]) -> Iterable[Sample[Any]]:
         """Take in a sample at its available time and yield what can be handed on."""
 
+    def beat(self, heartbeat: Heartbeat) -> Iterable[Element]:
+        """Take in a heartbeat; yield what is certain now, then a heartbeat of the stream made.
+
+        At one instant, `push` comes before `beat`.
+        """
+
     def advance(self, now: TimePoint) -> Iterable[Sample[Any]]:
         """Let time pass up to and including *now* and yield what has fallen due."""
 
     def due(self) -> TimePoint | None:
         """Return the next deadline, if there is one."""
+
+
+@runtime_checkable
+class VariesPeriod(Protocol):
+    """An adapter whose sample period can be changed while it works.
+
+    Attributes:
+        period: The period in force.
+    """
+
+    period: Duration
+
+    def set_period(self, period: Duration, now: TimePoint) -> Iterable[Sample[Any]]:
+        """Go on with another of the periods that the policy allows; yield what falls due.
+
+        Raises:
+            ValueError: The policy does not allow the period.
+        """
 
 
 def adapter_for(policy: Policy, now: TimePoint = START) -> Adapter | None:

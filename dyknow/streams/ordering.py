@@ -6,14 +6,16 @@ The constraints are those of definition 4.5.11 of Heintz (2009), except `sample 
 from typing import Any
 
 from dyknow.streams.policy import ANY_CHANGE, Constraint, Order, Policy, Violation
-from dyknow.streams.sample import Sample
+from dyknow.streams.sample import Heartbeat, Sample
 from dyknow.streams.values import are_equal
 from dyknow.time import TimePoint, text_from_duration
 
-__all__ = ["Filter", "delay_violation"]
+__all__ = ["NEVER", "Filter", "delay_violation"]
 
-_NEVER = 1 << 63
-_LEAST_STEP = {Order.ANY: -_NEVER, Order.MONOTONE: 0, Order.STRICT: 1}
+NEVER = 1 << 63
+"""Later than every time-point, longer than every duration."""
+
+_LEAST_STEP = {Order.ANY: -NEVER, Order.MONOTONE: 0, Order.STRICT: 1}
 
 
 class Filter:
@@ -30,8 +32,8 @@ class Filter:
         self.violations: list[Violation] = []
         self._policy = policy
         self._start = policy.first
-        self._end = _NEVER if policy.end is None else policy.end
-        self._max_delay = _NEVER if policy.max_delay is None else policy.max_delay
+        self._end = NEVER if policy.end is None else policy.end
+        self._max_delay = NEVER if policy.max_delay is None else policy.max_delay
         self._least_step = _LEAST_STEP[policy.order]
         self._wants_change = policy.change is ANY_CHANGE
         self._last: Sample[Any] | None = None
@@ -52,6 +54,10 @@ class Filter:
                 return ()
         self._last = sample
         return (sample,)
+
+    def beat(self, heartbeat: Heartbeat) -> tuple[Heartbeat]:
+        """Hand a heartbeat on: a filter keeps nothing back."""
+        return (heartbeat,)
 
     def advance(self, now: TimePoint) -> tuple[Sample[Any], ...]:  # noqa: ARG002 (protocol)
         """Yield nothing: time alone changes nothing."""
