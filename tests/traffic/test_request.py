@@ -53,6 +53,15 @@ def test_duration_and_camera_of_the_scenario_can_be_replaced():
         ({"duration": "0"}, "--duration: expected a duration above zero"),
         ({"duration": "3 fortnights"}, "--duration: expected a duration"),
         ({"seed": -1}, "--seed: expected a number of at least 0"),
+        ({"streams": "cars"}, "--streams: expected nothing, because it only has a meaning with"),
+        ({"record_images": True}, "--record-images: expected nothing, because it only has"),
+        ({"record": Path("x.bag")}, "--record: expected a name that ends in .mcap"),
+        ({"record": Path("no/x.mcap")}, "--record: expected a file in a folder that exists"),
+        ({"record": Path("x.mcap"), "streams": " , "}, "--streams: expected labels of streams"),
+        (
+            {"record": Path("x.mcap"), "record_images": True, "view": "truth"},
+            "--record-images: expected nothing, because it only has a meaning with --view vision",
+        ),
     ],
 )
 def test_impossible_requests_say_what_was_expected_and_found(options, message):
@@ -62,6 +71,22 @@ def test_impossible_requests_say_what_was_expected_and_found(options, message):
     with pytest.raises(RequestError) as caught:
         RunRequest.from_texts(**{**defaults, **options})
     assert message in str(caught.value)
+
+
+@pytest.mark.parametrize(
+    ("text", "labels"),
+    [
+        ("cars", ("cars",)),
+        ("cars, percepts[vision],cars", ("cars", "percepts[vision]")),
+        ("sync(a, sync(b, c)),d[x, y]", ("sync(a, sync(b, c))", "d[x, y]")),
+    ],
+)
+def test_streams_to_record_are_separated_by_commas(text, labels):
+    """Those in brackets belong to a label; a label counts once."""
+    request = RunRequest.from_texts(scenario="crossing", record=Path("x.mcap"), streams=text)
+
+    assert request.recording is not None
+    assert request.recording.streams == labels
 
 
 def test_an_unknown_scenario_is_answered_with_the_nearest_name():
