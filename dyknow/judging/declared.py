@@ -1,0 +1,76 @@
+"""What a specification declares, as far as a judge needs it: processes, streams and policies."""
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+
+from dyknow.judging.sorts import SortTest
+from dyknow.runtime.generators import Label
+from dyknow.streams.policy import Policy
+from dyknow.streams.process import ComputationalUnit, Source
+
+__all__ = ["ANYTHING", "DeclaredNetwork", "DeclaredProcess", "DeclaredStream"]
+
+ANYTHING = Policy()
+"""The policy that restricts nothing."""
+
+
+@dataclass(frozen=True, slots=True)
+class DeclaredStream:
+    """A stream term (Heintz 2009, definition 4.4.14) in its place.
+
+    Attributes:
+        topic: `RECEIVER/NUMBER` or `output/NAME`.
+        provider: The label of the generator.
+        policy: What the stream must keep.
+    """
+
+    topic: str
+    provider: Label
+    policy: Policy
+
+
+@dataclass(frozen=True, slots=True)
+class DeclaredProcess:
+    """A stream generator and the process that feeds it (definition 4.4.7).
+
+    Attributes:
+        label: The name of the generator.
+        inputs: The input streams; none for a source.
+        make_source: Makes the source; None for a unit, and for a source that cannot be had again.
+        make_unit: Makes the unit; None for a source.
+        sort: The declared sort of the values, as it is written.
+        sort_test: Tells what is wrong with a value that is not of this sort; None if it is not
+            known what the sort contains.
+        promise: The output policy, which all samples keep.
+    """
+
+    label: Label
+    inputs: tuple[DeclaredStream, ...] = ()
+    make_source: Callable[[], Source] | None = None
+    make_unit: Callable[[], ComputationalUnit] | None = None
+    sort: str = "any"
+    sort_test: SortTest | None = None
+    promise: Policy = ANYTHING
+
+    @property
+    def is_source(self) -> bool:
+        """Whether the process has no inputs."""
+        return self.make_unit is None
+
+    @property
+    def can_be_made(self) -> bool:
+        """Whether the process can be had again."""
+        return self.make_source is not None or self.make_unit is not None
+
+
+@dataclass(frozen=True, slots=True)
+class DeclaredNetwork:
+    """The processes of a specification and the output streams.
+
+    Attributes:
+        processes: By label, inputs before those that use them.
+        outputs: The output streams.
+    """
+
+    processes: Mapping[Label, DeclaredProcess]
+    outputs: tuple[DeclaredStream, ...] = ()

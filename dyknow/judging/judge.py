@@ -1,0 +1,219 @@
+"""Does an execution satisfy a specification?
+
+An interpretation is a model of a specification if every declaration holds (Heintz 2009, definition
+4.5.3). Each is looked at by itself, inputs before what they feed, with nothing but the
+recorded streams it speaks of. Valid times and available times are independent of each other
+(section 4.3.2 there): a sample that is available before it is valid, such as a prediction, is as
+good as any.
+"""
+
+from collections.abc import Iterable, Sequence
+from typing import Any
+
+from dyknow.errors import ProcessError
+from dyknow.judging.comparing import Comparison
+from dyknow.judging.declared import DeclaredNetwork, DeclaredProcess, DeclaredStream
+from dyknow.judging.execution import Execution
+from dyknow.judging.judgement import Basis, Breach, Definition, Finding, Judgement, Tally
+from dyknow.judging.published import PublishedViolations
+from dyknow.judging.recomputing import Recomputation, unknown_behind
+from dyknow.judging.streams import KnownStreams
+from dyknow.judging.terms import TermBreaches, policy_breaches
+from dyknow.judging.wellformed import heartbeat_breaches, order_breaches, sort_breaches
+from dyknow.runtime.generators import Label
+from dyknow.runtime.subscriptions import StreamViolation
+from dyknow.streams.sample import Sample
+
+__all__ = ["KEPT", "judge"]
+
+KEPT = 10
+"""How many breaches of each stream are kept unless the caller says otherwise."""
+
+_OUTPUT = Label("output")
+
+
+def judge(network: DeclaredNetwork, execution: Execution, keep: int = KEPT) -> Judgement:
+    """Return whether an execution satisfies what is declared, and where it does not.
+
+    *keep* breaches of each stream are kept, the others are counted.
+    """
+    return _Judge(network, execution, keep).judgement()
+
+
+class _Draft:
+    """A finding while it is being made."""
+
+    def __init__(self, stream: str, definition: Definition, keep: int) -> None:
+        self.stream = stream
+        self.definition = definition
+        self.tally = Tally(keep)
+        self.samples = 0
+        self.basis = Basis.NOTHING
+        self.unjudged: list[str] = []
+
+    def finished(self) -> Finding:
+        return Finding(
+            self.stream,
+            self.definition,
+            self.samples,
+            self.basis,
+            self.tally.kept,
+            self.tally.count,
+            tuple(self.unjudged),
+        )
+
+
+class _Judge:
+    """Looks at one declaration after the other.
+
+    A stream that is found to be at fault is suspected from then on: what does not follow from it
+    may still follow from what it should have been, and then it alone is to blame.
+    """
+
+    def __init__(self, network: DeclaredNetwork, execution: Execution, keep: int) -> None:
+        self._network = network
+        self._streams = KnownStreams(execution)
+        self._until = execution.until
+        self._keep = keep
+        self._violations = execution.violations()
+        self._published = PublishedViolations(self._violations or ())
+        self._suspects: set[str] = set()
+
+    def judgement(self) -> Judgement:
+        findings: list[Finding] = []
+        for process in self._network.processes.values():
+            findings.extend(self._term(stream, process.label) for stream in process.inputs)
+            findings.append(self._generator(process))
+        findings.extend(self._term(stream, _OUTPUT) for stream in self._network.outputs)
+        findings.append(self._violation_streams())
+        return Judgement(tuple(findings))
+
+    def _generator(self, process: DeclaredProcess) -> Finding:
+        """Judge the declaration of a stream generator (definitions 4.5.4, 4.5.7 and 4.5.8)."""
+        label = process.label
+        definition = Definition.SOURCE if process.is_source else Definition.UNIT
+        draft = _Draft(label, definition, self._keep)
+        if label in self._streams:
+            draft.samples = len(self._streams.as_recorded(label))
+            draft.tally.add(self._wellformed(process))
+            draft.unjudged.extend(self._reasons_against_computing(process))
+            if not draft.unjudged:
+                self._compute(process, draft)
+        else:
+            draft.unjudged.append("it was not recorded")
+        if draft.basis is Basis.NOTHING:
+            self._published.leave_open(label, label)
+        return self._finished(draft)
+
+    def _wellformed(self, process: DeclaredProcess) -> Iterable[Breach]:
+        label = process.label
+        samples = self._streams.as_recorded(label)
+        yield from order_breaches(label, samples)
+        yield from heartbeat_breaches(label, samples, self._streams.heartbeats(label))
+        if process.sort_test is not None:
+            yield from sort_breaches(label, samples, process.sort_test, process.sort)
+        promise = DeclaredStream(label, label, process.promise)
+        yield from policy_breaches(promise, self._streams[label], ())
+
+    def _reasons_against_computing(self, process: DeclaredProcess) -> list[str]:
+        if process.is_source and not process.can_be_made:
+            return ["its source cannot be asked again"]
+        unknown = unknown_behind(self._network, process.label, self._streams.topics)
+        names = ", ".join(f"'{label}'" for label in sorted(set(unknown)))
+        return [f"it cannot be computed again without {names}"] if names else []
+
+    def _compute(self, process: DeclaredProcess, draft: _Draft) -> None:
+        """Compare what was recorded with what follows from the recorded inputs.
+
+        If they differ and something before them is at fault, it may also be what follows from
+        what that should have been.
+        """
+        answer = self._answer(process, frozenset())
+        if answer.tally.count and self._suspects:
+            other = self._answer(process, self._suspects)
+            if other.tally.count < answer.tally.count:
+                answer = other
+        draft.tally.merge(answer.tally)
+        draft.basis = answer.basis
+        violations = [each.violation for each in answer.violations]
+        self._published.expect(process.label, process.label, violations)
+
+    def _answer(self, process: DeclaredProcess, distrusted: Iterable[str]) -> "_Answer":
+        label = process.label
+        answer = _Answer(self._keep)
+        recomputation = Recomputation(
+            self._network, self._streams, frozenset(distrusted) - {label}
+        )
+        definition = Definition.SOURCE if process.is_source else Definition.UNIT
+        comparison = Comparison(label, definition, self._streams[label], answer.tally)
+        try:
+            recomputation.run(label, comparison.expect, self._until)
+        except ProcessError as error:
+            answer.tally.add([_failure(label, definition, error)])
+        comparison.finish()
+        answer.basis, answer.violations = recomputation.basis, recomputation.violations
+        return answer
+
+    def _term(self, stream: DeclaredStream, receiver: Label) -> Finding:
+        """Judge a stream term (definitions 4.5.9 to 4.5.12)."""
+        definition = Definition.STREAM if receiver == _OUTPUT else Definition.TERM
+        draft = _Draft(stream.topic, definition, self._keep)
+        if stream.topic in self._streams:
+            draft.samples = len(self._streams.as_recorded(stream.topic))
+            draft.tally.add(order_breaches(stream.topic, self._streams.as_recorded(stream.topic)))
+        else:
+            draft.unjudged.append("it was not recorded")
+        if stream.provider in self._streams:
+            self._adapt(stream, receiver, draft)
+        else:
+            self._published.leave_open(stream.provider, receiver)
+            draft.unjudged.append(f"'{stream.provider}', of which it is made, was not recorded")
+        return self._finished(draft)
+
+    def _adapt(self, stream: DeclaredStream, receiver: Label, draft: _Draft) -> None:
+        """Compare a stream with what its policy allows to make of the provider's samples."""
+        adapted: list[Sample[Any]] = []
+        recomputation = Recomputation(self._network, self._streams)
+        recomputation.run_input(stream, adapted.append, self._until)
+        violations = [each.violation for each in recomputation.violations]
+        self._published.expect(stream.provider, receiver, violations)
+        if stream.topic not in self._streams:
+            return
+        draft.basis = Basis.RECORDED
+        recorded, provider = self._streams[stream.topic], self._streams[stream.provider]
+        published = self._published.of(stream.provider, receiver)
+        term = TermBreaches(stream, recorded, provider, adapted, published, self._until)
+        draft.tally.add(term.all())
+        draft.tally.add(policy_breaches(stream, recorded, published))
+
+    def _violation_streams(self) -> Finding:
+        draft = _Draft("violations", Definition.POLICY, self._keep)
+        if self._violations is None:
+            draft.unjudged.append("violations were not recorded")
+            return draft.finished()
+        draft.samples = len(self._violations)
+        draft.basis = Basis.RECORDED
+        draft.tally.add(self._published.breaches())
+        return draft.finished()
+
+    def _finished(self, draft: _Draft) -> Finding:
+        if draft.tally.count:
+            self._suspects.add(draft.stream)
+        return draft.finished()
+
+
+class _Answer:
+    """What came out when a process was run again."""
+
+    def __init__(self, keep: int) -> None:
+        self.tally = Tally(keep)
+        self.basis = Basis.NOTHING
+        self.violations: Sequence[StreamViolation] = ()
+
+
+def _failure(label: Label, definition: Definition, error: ProcessError) -> Breach:
+    cause = error.__cause__
+    found = f"a failure: {type(cause).__name__}: {cause}"
+    return Breach(
+        label, definition, "an answer to the recorded inputs", found, error.time, error.time
+    )

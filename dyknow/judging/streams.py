@@ -1,0 +1,68 @@
+"""The streams of an execution, put in order, with those at hand that were used last."""
+
+from collections import OrderedDict
+from collections.abc import Iterator, Sequence
+from heapq import merge
+from typing import Any
+
+from dyknow.judging.execution import Execution
+from dyknow.streams.process import Element
+from dyknow.streams.sample import Heartbeat, Sample
+from dyknow.streams.stream import is_fluent_stream
+from dyknow.time import TimePoint
+
+__all__ = ["KnownStreams"]
+
+_KEPT = 4
+"""How many streams are kept in memory."""
+
+
+class KnownStreams:
+    """The recorded streams by topic, each in strict order of available time.
+
+    A recording that is out of order is put in order, and of samples with one available time the
+    first is taken; the judge has reported it then.
+    """
+
+    def __init__(self, execution: Execution) -> None:
+        self._execution = execution
+        self._topics = frozenset(execution.topics)
+        self._recent: OrderedDict[str, Sequence[Sample[Any]]] = OrderedDict()
+
+    def __contains__(self, topic: str) -> bool:
+        return topic in self._topics
+
+    def __getitem__(self, topic: str) -> Sequence[Sample[Any]]:
+        samples = self.as_recorded(topic)
+        if is_fluent_stream(samples):
+            return samples
+        by_time: dict[int, Sample[Any]] = {}
+        for sample in samples:
+            by_time.setdefault(sample.available_time, sample)
+        return [by_time[time] for time in sorted(by_time)]
+
+    @property
+    def topics(self) -> frozenset[str]:
+        """The topics of the recorded streams."""
+        return self._topics
+
+    def heartbeats(self, topic: str) -> Sequence[Heartbeat]:
+        """Return the heartbeats of a stream in order of available time."""
+        return self._execution.heartbeats(topic)
+
+    def elements(self, topic: str) -> Iterator[Element]:
+        """Yield samples and heartbeats in order of available time; at one time, samples first."""
+        return merge(self[topic], self.heartbeats(topic), key=_available_time)
+
+    def as_recorded(self, topic: str) -> Sequence[Sample[Any]]:
+        """Return the samples of a stream as they stand in the recording."""
+        if topic not in self._recent:
+            self._recent[topic] = self._execution.samples(topic)
+            if len(self._recent) > _KEPT:
+                self._recent.popitem(last=False)
+        self._recent.move_to_end(topic)
+        return self._recent[topic]
+
+
+def _available_time(element: Element) -> TimePoint:
+    return element.available_time
