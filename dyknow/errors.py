@@ -101,12 +101,26 @@ class PolicyError(SpecificationError):
 
 
 class ProcessError(DyKnowError):
-    """A knowledge process failed; the cause is attached."""
+    """A knowledge process failed; the cause is attached.
 
-    def __init__(self, label: str, time: TimePoint) -> None:
-        super().__init__(f"process '{label}' failed at {text_from_duration(time)} ms")
+    Attributes:
+        label: The label of its stream generator.
+        time: The instant at which it failed.
+        inputs: The label of each input stream and the sample it was called with.
+    """
+
+    def __init__(
+        self,
+        label: str,
+        time: TimePoint,
+        reason: str = "",
+        inputs: Sequence[tuple[str, object]] = (),
+    ) -> None:
+        because = f": {reason}" if reason else ""
+        super().__init__(f"process '{label}' failed at {text_from_duration(time)} ms{because}")
         self.label = label
         self.time = time
+        self.inputs = tuple(inputs)
 
 
 class ServiceError(DyKnowError, ValueError):

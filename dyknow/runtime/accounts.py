@@ -14,9 +14,11 @@ class Account:
         samples: How many samples it produced.
         seconds: Processor time spent in it.
         violations: How many violations its input streams have seen.
+        failures: How often it failed.
     """
 
     calls: int = 0
     samples: int = 0
     seconds: float = 0.0
     violations: int = 0
+    failures: int = 0

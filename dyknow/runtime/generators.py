@@ -2,73 +2,183 @@
 
 from collections import deque
 from collections.abc import Callable
-from typing import Any, NewType
+from typing import Any
 
 from dyknow.runtime.accounts import Account
-from dyknow.streams.sample import Sample
-from dyknow.time import TimePoint
+from dyknow.runtime.agenda import Agenda
+from dyknow.runtime.cache import CACHE_SIZE, NEVER, CachedStream, Label
+from dyknow.runtime.statistics import Statistics, Tally
+from dyknow.streams.policy import Policy
+from dyknow.streams.process import Element
+from dyknow.streams.sample import Heartbeat, Sample
+from dyknow.time import TimePoint, text_from_duration
 
-__all__ = ["Label", "Receive", "StreamGenerator"]
+__all__ = ["ANYTHING", "Beat", "Label", "Receive", "StreamGenerator"]
 
-Label = NewType("Label", str)
-"""The name of a stream generator as KPL writes it, such as `cars` or `percepts[vision]`."""
+ANYTHING = Policy()
+"""The policy that restricts nothing."""
 
 Receive = Callable[[Sample[Any]], None]
 """Takes the samples of a stream as they become available."""
 
+Beat = Callable[[Heartbeat], None]
+"""Takes the heartbeats of a stream as they become available."""
 
-class StreamGenerator:
+
+class StreamGenerator(CachedStream):
     """Hands the samples of one process to everyone who has subscribed.
 
     Available times are unique in a stream: a sample that would become available no later than
-    the one before it is given the next nanosecond.
+    the one before it is given the next nanosecond. The last few samples are held for queries
+    and for streams that begin in the past.
 
     Attributes:
         label: The name of the generator.
         depth: How many processes lie between it and the sources; 0 for a source.
+        output_policy: What its process promises about all that it produces.
         account: What its process has cost and given.
+        tally: The figures of the stream of all samples that have become available.
+        complete_until: The valid time up to which its process has promised no more samples;
+            `NEVER` without a promise.
+        last: The last sample that has become available.
     """
 
-    __slots__ = ("_last", "_receivers", "_waiting", "account", "depth", "label")
+    __slots__ = (
+        "_agenda",
+        "_beats",
+        "_last_time",
+        "_receivers",
+        "_waiting",
+        "account",
+        "complete_until",
+        "depth",
+        "last",
+        "output_policy",
+        "tally",
+    )
 
-    def __init__(self, label: Label, depth: int) -> None:
-        self.label = label
+    def __init__(
+        self,
+        label: Label,
+        depth: int,
+        agenda: Agenda,
+        output_policy: Policy = ANYTHING,
+        capacity: int = CACHE_SIZE,
+    ) -> None:
+        super().__init__(label, capacity)
         self.depth = depth
+        self.output_policy = output_policy
         self.account = Account()
-        self._last = TimePoint(-1)
-        self._receivers: list[Receive] = []
-        self._waiting: deque[Sample[Any]] = deque()
+        self.tally = Tally()
+        self.last: Sample[Any] | None = None
+        self._agenda = agenda
+        self._last_time = TimePoint(-1)
+        self.complete_until = NEVER
+        self._receivers: dict[object, Receive] = {}
+        self._beats: dict[object, Beat] = {}
+        self._waiting: deque[Element] = deque()
 
     @property
     def next_release(self) -> TimePoint | None:
         """When the next sample that is not available yet will be."""
         return self._waiting[0].available_time if self._waiting else None
 
-    def connect(self, receive: Receive) -> None:
-        """Hand all samples from now on to *receive* too."""
-        self._receivers.append(receive)
+    @property
+    def is_fresh(self) -> bool:
+        """Whether nothing has been handed out or promised yet."""
+        return self.last is None and self.complete_until == NEVER
 
-    def disconnect(self, receive: Receive) -> None:
-        """Hand no more samples to *receive*."""
-        self._receivers.remove(receive)
+    @property
+    def statistics(self) -> Statistics:
+        """The figures of the whole stream, no policy applied."""
+        return self.tally.statistics
 
-    def put(self, sample: Sample[Any], now: TimePoint) -> None:
+    @property
+    def n_receivers(self) -> int:
+        """To how many different places each sample is handed."""
+        return len(self._receivers)
+
+    def connect(self, key: object, receive: Receive, beat: Beat | None = None) -> None:
+        """Hand all samples from now on to *receive*, and heartbeats to *beat*, if there is one.
+
+        What *key* was connected to before is replaced.
+        """
+        self._receivers[key] = receive
+        if beat is not None:
+            self._beats[key] = beat
+
+    def disconnect(self, key: object) -> None:
+        """Hand nothing more to what *key* was connected to."""
+        del self._receivers[key]
+        self._beats.pop(key, None)
+
+    def check(self, element: Element) -> None:
+        """Raise an error if the process may not produce this now."""
+        if element.__class__ is Sample:
+            if element.valid_time <= self.complete_until:
+                until = text_from_duration(self.complete_until)
+                valid_time = text_from_duration(element.valid_time)
+                raise ValueError(
+                    f"a sample valid at {valid_time} after the promise of none up to {until}"
+                )
+        elif element.__class__ is not Heartbeat:
+            raise TypeError(f"expected a sample or a heartbeat, found {element!r}")
+
+    def put(self, element: Element, now: TimePoint) -> None:
         """Take in what the process has produced at *now*; hand it out when it is available."""
-        earliest = now if now > self._last else TimePoint(self._last + 1)
-        if sample.available_time < earliest:
-            sample = Sample(sample.value, sample.valid_time, earliest)
-        self._last = sample.available_time
+        if isinstance(element, Heartbeat):
+            self._put_heartbeat(element, now)
+            return
+        wanted = element.available_time
+        earliest = now if now > self._last_time else TimePoint(self._last_time + 1)
+        if wanted < earliest:
+            element = Sample(element.value, element.valid_time, earliest)
+            self._agenda.extend(max(wanted, now), earliest)
+        self._last_time = element.available_time
         self.account.samples += 1
-        if sample.available_time <= now:
-            self._hand_out(sample)
+        if element.available_time <= now:
+            self._hand_out(element)
         else:
-            self._waiting.append(sample)
+            self._wait_with(element)
 
     def release(self, now: TimePoint) -> None:
         """Hand out the samples that have become available by *now*."""
         while self._waiting and self._waiting[0].available_time <= now:
-            self._hand_out(self._waiting.popleft())
+            self._agenda.pending -= 1
+            element = self._waiting.popleft()
+            if isinstance(element, Heartbeat):
+                self._beat(element)
+            else:
+                self._hand_out(element)
+
+    def clear(self) -> None:
+        """Forget the samples that are not available yet."""
+        self._agenda.pending -= len(self._waiting)
+        self._waiting.clear()
+
+    def _put_heartbeat(self, heartbeat: Heartbeat, now: TimePoint) -> None:
+        self.complete_until = max(self.complete_until, heartbeat.until)
+        earliest = max(now, self._last_time)
+        if heartbeat.available_time < earliest:
+            heartbeat = Heartbeat(heartbeat.until, earliest)
+        self._last_time = TimePoint(max(self._last_time, heartbeat.available_time - 1))
+        if heartbeat.available_time <= now:
+            self._beat(heartbeat)
+        else:
+            self._wait_with(heartbeat)
+
+    def _wait_with(self, element: Element) -> None:
+        self._waiting.append(element)
+        self._agenda.pending += 1
 
     def _hand_out(self, sample: Sample[Any]) -> None:
-        for receive in self._receivers:
+        self.last = sample
+        self._hold(sample)
+        self.tally.note(sample)
+        for receive in self._receivers.values():
             receive(sample)
+
+    def _beat(self, heartbeat: Heartbeat) -> None:
+        self.tally.heartbeats += 1
+        for beat in self._beats.values():
+            beat(heartbeat)

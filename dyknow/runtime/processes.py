@@ -1,84 +1,217 @@
 """Sources and computational units at work: who calls them, and what their calls cost."""
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from dataclasses import dataclass
+from enum import Enum
 from typing import Any
 
 from dyknow.errors import ProcessError
+from dyknow.runtime.accounts import Account
+from dyknow.runtime.adaptation import END_OF_TIME
 from dyknow.runtime.agenda import Agenda
-from dyknow.runtime.generators import Receive, StreamGenerator
+from dyknow.runtime.failures import Failure, OnFailure
+from dyknow.runtime.generators import Beat, Label, Receive, StreamGenerator
 from dyknow.streams.adapter import ReportsViolations
-from dyknow.streams.policy import Violation
-from dyknow.streams.process import ComputationalUnit, Source
-from dyknow.streams.sample import NO_SAMPLE, Sample
+from dyknow.streams.policy import Policy, Violation
+from dyknow.streams.process import ComputationalUnit, Element, HearsHeartbeats, Source
+from dyknow.streams.sample import NO_SAMPLE, Heartbeat, Sample
 from dyknow.time import TimePoint, text_from_duration
 
-__all__ = ["RunningSource", "RunningUnit", "priority_of"]
+__all__ = ["Kind", "RunningProcess", "RunningSource", "RunningUnit", "Surroundings"]
 
 _LAST = 1 << 40
 """The priority of asking sources for more: after all other work of an instant."""
 
 
-def priority_of(depth: int) -> int:
-    """Return the priority of a process; the odd ones in between belong to its input streams."""
-    return 2 * depth
+class Kind(Enum):
+    """The two kinds of knowledge process."""
+
+    SOURCE = "source"
+    UNIT = "unit"
 
 
-class RunningSource:
+@dataclass(frozen=True, slots=True)
+class Surroundings:
+    """What all processes of a network work with.
+
+    Attributes:
+        agenda: Gives them their turns.
+        meter: Tells processor seconds, for the accounts alone.
+        publish: Takes a violation that the unit of this label reports itself.
+        report: Takes a failure, before anything is done about it.
+    """
+
+    agenda: Agenda
+    meter: Callable[[], float]
+    publish: Callable[[Label, Violation], None]
+    report: Callable[[Failure], None]
+
+
+class RunningProcess:
+    """A knowledge process of a network and its stream generator.
+
+    Attributes:
+        kind: Whether it is a source or a unit.
+        process: The source or unit itself.
+        generator: Where its samples come out.
+        on_failure: What is done when it fails.
+        failure: Its failure, if it has failed.
+        has_ended: Whether it will produce nothing more.
+    """
+
+    kind: Kind
+
+    def __init__(
+        self,
+        process: Source | ComputationalUnit,
+        generator: StreamGenerator,
+        on_failure: OnFailure,
+        surroundings: Surroundings,
+    ) -> None:
+        self.process = process
+        self.generator = generator
+        self.on_failure = on_failure
+        self.failure: Failure | None = None
+        self.has_ended = False
+        self._agenda = surroundings.agenda
+        self._meter = surroundings.meter
+        self._report = surroundings.report
+        # Odd priorities, in between, belong to the streams that this process feeds.
+        self._ticket = surroundings.agenda.join(self, 2 * generator.depth)
+
+    @property
+    def label(self) -> Label:
+        """The label of the stream generator."""
+        return self.generator.label
+
+    @property
+    def depth(self) -> int:
+        """How many processes lie between this one and the sources; 0 for a source."""
+        return self.generator.depth
+
+    @property
+    def output_policy(self) -> Policy:
+        """What the process promises about all that it produces."""
+        return self.generator.output_policy
+
+    @property
+    def account(self) -> Account:
+        """What the process has cost and given."""
+        return self.generator.account
+
+    @property
+    def inputs(self) -> Sequence[tuple[Label, Sample[Any]]]:
+        """The label and the last sample of each input stream; empty for a source."""
+        return ()
+
+    def start(self, now: TimePoint) -> None:
+        """Begin to work at *now*."""
+
+    def turn(self, now: TimePoint) -> None:
+        """Do what is due at *now*."""
+
+    def withdraw(self) -> None:
+        """Leave the network and forget what has not become available."""
+        self.has_ended = True
+        self.generator.clear()
+        self._agenda.leave(self._ticket)
+
+    def _fail(self, error: Exception, now: TimePoint) -> None:
+        failure = Failure(self.label, now, tuple(self.inputs), error)
+        self.failure = failure
+        self.account.failures += 1
+        self.has_ended = self.on_failure is OnFailure.END
+        self._report(failure)
+        if not self.has_ended:
+            raise ProcessError(self.label, now, failure.text, failure.inputs) from error
+        # Nothing more will come, so that nobody needs to wait for it.
+        self.generator.put(Heartbeat(END_OF_TIME, now), now)
+
+    def _plan_release(self) -> None:
+        release = self.generator.next_release
+        if release is not None:
+            self._agenda.wake(self._ticket, release)
+
+
+class RunningSource(RunningProcess):
     """A source, asked for each sample only when all that follows from the last one is done."""
+
+    kind = Kind.SOURCE
 
     def __init__(
         self,
         source: Source,
         generator: StreamGenerator,
-        agenda: Agenda,
-        meter: Callable[[], float],
+        on_failure: OnFailure,
+        surroundings: Surroundings,
     ) -> None:
+        super().__init__(source, generator, on_failure, surroundings)
         self._source = source
-        self._generator = generator
-        self._agenda = agenda
-        self._meter = meter
-        self._samples: Iterator[Sample[Any]] | None = None
-        self._next: Sample[Any] | None = None
-        self._ticket = agenda.join(self, priority_of(0))
-        self._asking = agenda.join(_Asking(self), _LAST)
-        self.has_ended = False
+        self._elements: Iterator[Element] | None = None
+        self._next: Element | None = None
+        self._reached = TimePoint(-1)
+        self._asking = self._agenda.join(_Asking(self), _LAST)
+        self._agenda.pending += 1
 
     def start(self, now: TimePoint) -> None:
-        """Ask for the first sample, unless that has been done."""
-        if self._samples is None:
-            self.ask(now)
+        """Ask for the first sample."""
+        self.ask(now)
 
     def ask(self, now: TimePoint) -> None:
         """Read one sample and plan the turn at which it becomes available."""
         started = self._meter()
         try:
-            if self._samples is None:
-                self._samples = iter(self._source.samples())
-            self._next = next(self._samples, None)
-            self._check_order(now)
-        except Exception as fault:
-            raise ProcessError(self._generator.label, now) from fault
-        self._generator.account.seconds += self._meter() - started
-        self._generator.account.calls += 1
+            self._next = self._read()
+        except Exception as error:  # noqa: BLE001, told to all and raised unless it may be survived
+            self._fail(error, now)
+            self._end()
+            return
+        self.account.seconds += self._meter() - started
+        self.account.calls += 1
         if self._next is None:
-            self.has_ended = True
+            self._end()
         else:
             self._agenda.wake(self._ticket, max(self._next.available_time, now))
 
     def turn(self, now: TimePoint) -> None:
         """Hand out the sample that is due and plan to ask for the next."""
-        self._generator.release(now)
+        self.generator.release(now)
         if self._next is not None and self._next.available_time <= now:
-            self._generator.put(self._next, now)
+            self.generator.put(self._next, now)
             self._next = None
             self._agenda.wake(self._asking, now)
-        if (release := self._generator.next_release) is not None:
-            self._agenda.wake(self._ticket, release)
+        self._plan_release()
 
-    def _check_order(self, now: TimePoint) -> None:
-        if self._next is not None and self._next.available_time < now:
-            then, at = text_from_duration(self._next.available_time), text_from_duration(now)
+    def withdraw(self) -> None:
+        """Leave the network; close the source if it can be closed."""
+        if not self.has_ended:
+            self._end()
+        super().withdraw()
+        self._agenda.leave(self._asking)
+        close = getattr(self._elements, "close", None)
+        if close is not None:
+            close()
+
+    def _end(self) -> None:
+        self.has_ended = True
+        self._next = None
+        self._agenda.pending -= 1
+        self._plan_release()
+
+    def _read(self) -> Element | None:
+        if self._elements is None:
+            self._elements = iter(self._source.samples())
+        element = next(self._elements, None)
+        if element is not None:
+            self.generator.check(element)
+            self._check_order(element.available_time)
+        return element
+
+    def _check_order(self, time: TimePoint) -> None:
+        if time < self._reached:
+            then, at = text_from_duration(time), text_from_duration(self._reached)
             raise ValueError(f"the source went back in time, from {at} to {then} ms")
+        self._reached = time
 
 
 class _Asking:
@@ -91,28 +224,34 @@ class _Asking:
         self._source.ask(now)
 
 
-class RunningUnit:
+class RunningUnit(RunningProcess):
     """A computational unit with the last available sample of each of its inputs."""
+
+    kind = Kind.UNIT
 
     def __init__(
         self,
         unit: ComputationalUnit,
-        n_inputs: int,
+        providers: Sequence[Label],
         generator: StreamGenerator,
-        agenda: Agenda,
-        meter: Callable[[], float],
-        publish: Callable[[Violation], None],
+        on_failure: OnFailure,
+        surroundings: Surroundings,
     ) -> None:
+        super().__init__(unit, generator, on_failure, surroundings)
         self._unit = unit
-        self._inputs: list[Sample[Any]] = [NO_SAMPLE] * n_inputs
+        self._providers = tuple(providers)
+        self._inputs: list[Sample[Any]] = [NO_SAMPLE] * len(providers)
         self._has_news = False
+        self._heartbeats: dict[int, Heartbeat] = {}
         self._due: TimePoint | None = None
-        self._generator = generator
-        self._agenda = agenda
-        self._meter = meter
+        self._hears = unit if isinstance(unit, HearsHeartbeats) else None
         self._reporter = unit if isinstance(unit, ReportsViolations) else None
-        self._publish = publish
-        self._ticket = agenda.join(self, priority_of(generator.depth))
+        self._publish = surroundings.publish
+
+    @property
+    def inputs(self) -> Sequence[tuple[Label, Sample[Any]]]:
+        """The label and the last sample of each input stream."""
+        return tuple(zip(self._providers, self._inputs, strict=True))
 
     def start(self, now: TimePoint) -> None:
         """Plan the first alarm of a unit that has one before its first input."""
@@ -121,7 +260,7 @@ class RunningUnit:
             self._agenda.wake(self._ticket, max(due, now))
 
     def receiver(self, at: int) -> Receive:
-        """Return what takes the samples of input number *at*."""
+        """Return what takes the samples of input number *at*, counted from 0."""
 
         def receive(sample: Sample[Any]) -> None:
             self._inputs[at] = sample
@@ -130,38 +269,63 @@ class RunningUnit:
 
         return receive
 
+    def beat(self, at: int) -> Beat | None:
+        """Return what takes the heartbeats of input number *at*, if the unit listens to them."""
+        if self._hears is None:
+            return None
+
+        def beat(heartbeat: Heartbeat) -> None:
+            self._heartbeats[at] = heartbeat
+            self._agenda.wake(self._ticket, heartbeat.available_time)
+
+        return beat
+
     def turn(self, now: TimePoint) -> None:
         """Hand out what is due, call the unit, and plan the next turn."""
-        self._generator.release(now)
-        for sample in self._call(now):
-            self._generator.put(sample, now)
-        if self._reporter is not None:
-            for violation in self._reporter.take_violations():
-                self._publish(violation)
-        for time in (self._due, self._generator.next_release):
-            if time is not None:
-                self._agenda.wake(self._ticket, time)
+        self.generator.release(now)
+        if not self.has_ended:
+            for element in self._call(now):
+                self.generator.put(element, now)
+            if self._reporter is not None:
+                for violation in self._reporter.take_violations():
+                    self._publish(self.label, violation)
+            if self._due is not None:
+                self._agenda.wake(self._ticket, self._due)
+        self._plan_release()
 
-    def _call(self, now: TimePoint) -> list[Sample[Any]]:
+    def _call(self, now: TimePoint) -> Iterable[Element]:
         started = self._meter()
         try:
             produced = self._tell(now)
-        except Exception as fault:
-            raise ProcessError(self._generator.label, now) from fault
-        self._generator.account.seconds += self._meter() - started
+            for element in produced:
+                self.generator.check(element)
+        except Exception as error:  # noqa: BLE001, told to all and raised unless it may be survived
+            self._fail(error, now)
+            self._due = None
+            return ()
+        self.account.seconds += self._meter() - started
         return produced
 
-    def _tell(self, now: TimePoint) -> list[Sample[Any]]:
-        produced: list[Sample[Any]] = []
+    def _tell(self, now: TimePoint) -> list[Element]:
+        unit, produced = self._unit, list[Element]()
         if self._has_news:
             self._has_news = False
-            self._generator.account.calls += 1
-            produced.extend(self._unit.push(now, tuple(self._inputs)))
-        self._due = self._unit.due()
+            self.account.calls += 1
+            produced.extend(unit.push(now, tuple(self._inputs)))
+        if self._heartbeats:
+            produced.extend(self._pass_heartbeats(now))
+        self._due = unit.due()
         if self._due is not None and self._due <= now:
-            self._generator.account.calls += 1
-            produced.extend(self._unit.advance(now))
-            self._due = self._unit.due()
+            self.account.calls += 1
+            produced.extend(unit.advance(now))
+            self._due = unit.due()
             if self._due is not None and self._due <= now:
                 raise ValueError("after 'advance' the unit is still due at the same time")
         return produced
+
+    def _pass_heartbeats(self, now: TimePoint) -> Iterator[Element]:
+        assert self._hears is not None  # else no heartbeats are taken in
+        heartbeats, self._heartbeats = self._heartbeats, {}
+        for at, heartbeat in sorted(heartbeats.items()):
+            self.account.calls += 1
+            yield from self._hears.beat(now, at, heartbeat)

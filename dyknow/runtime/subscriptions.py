@@ -1,19 +1,19 @@
-"""A stream on its way from a generator to a receiver, adapted to the receiver's policy."""
+"""Who receives which stream under which policy, and how that is changed."""
 
-from collections import deque
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Hashable
 from dataclasses import dataclass
-from typing import Any
 
+from dyknow.errors import PolicyNotSupportedError
+from dyknow.runtime.accounts import Account
+from dyknow.runtime.adaptation import AdaptedStream, PlainStream
 from dyknow.runtime.agenda import Agenda
-from dyknow.runtime.generators import Label, Receive, StreamGenerator
-from dyknow.streams.adapter import Adapter
-from dyknow.streams.ordering import Filter
-from dyknow.streams.policy import Violation
-from dyknow.streams.sample import Sample
-from dyknow.time import TimePoint
+from dyknow.runtime.changes import Changes
+from dyknow.runtime.generators import ANYTHING, Beat, Label, Receive, StreamGenerator
+from dyknow.runtime.statistics import Statistics, Tally
+from dyknow.streams.policy import Policy, Violation
+from dyknow.streams.refusal import refusal
 
-__all__ = ["FilteredSubscription", "StreamViolation", "Subscription"]
+__all__ = ["Receiver", "StreamProxy", "StreamViolation", "Subscriptions", "ViolationReceiver"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -22,104 +22,244 @@ class StreamViolation:
 
     Attributes:
         provider: The label of the generator.
-        receiver: The label of the process that asked for the policy, or `output`.
+        receiver: The label of the process that asked for the policy, or the name of a
+            subscription, which is `output` where nobody says otherwise. A unit that reports a
+            violation itself is provider and receiver.
         violation: What was violated, where, and why.
+        number: Which input of the receiver, counted from 1; 0 for a subscription and for what a
+            unit reports itself.
     """
 
     provider: Label
     receiver: Label
     violation: Violation
+    number: int = 0
 
 
-Publish = Callable[[StreamViolation], None]
-"""Takes the violations of a stream."""
+Stream = AdaptedStream | PlainStream
+"""What a receiver can be attached to."""
+
+ViolationReceiver = Callable[[StreamViolation], None]
+"""Takes the violations of a stream, or of a whole network."""
 
 
-class FilteredSubscription:
-    """Puts a filter between a generator and a receiver; there are no alarms to ring."""
+@dataclass(frozen=True, slots=True)
+class Receiver:
+    """Who is to receive a stream.
 
-    def __init__(
-        self, provider: Label, receiver: Label, receive: Receive, adapter: Filter, publish: Publish
-    ) -> None:
-        self._provider = provider
-        self._receiver = receiver
-        self._receive = receive
-        self._filter = adapter
-        self._publish = publish
-
-    def receive(self, sample: Sample[Any]) -> None:
-        """Take in a sample of the generator."""
-        if self._filter.push(sample):
-            self._receive(sample)
-        elif self._filter.violations:
-            for violation in self._filter.take_violations():
-                self._publish(StreamViolation(self._provider, self._receiver, violation))
-
-
-class Subscription:
-    """Puts an adapter between a generator and a receiver, and rings its alarms.
-
-    Its turns come before those of the processes it can feed and after those of the process that
-    feeds it, so that at one instant arrivals come before alarms.
+    Attributes:
+        label: The label of the process, or the name of a subscription.
+        number: Which input of the process, counted from 1; 0 for a subscription.
+        receive: Takes the samples.
+        beat: Takes the heartbeats, if they are wanted.
+        account: The account of the process.
     """
+
+    label: Label
+    number: int
+    receive: Receive
+    beat: Beat | None = None
+    account: Account | None = None
+
+
+class StreamProxy:
+    """The client's end of one stream, adapted to its policy.
+
+    Attributes:
+        provider: The label of the generator.
+        receiver: The label of the process that receives, or the name of the subscription.
+        number: Which input of the receiver, counted from 1; 0 for a subscription.
+        receive: Takes the samples.
+        beat: Takes the heartbeats, if they are wanted.
+        generator: Where the samples come from.
+        policy: What the stream keeps.
+        stream: What is received at present; None before the beginning and after the end.
+        has_ended: Whether nothing more will be received, because the stream was ended.
+    """
+
+    __slots__ = (
+        "_account",
+        "_subscriptions",
+        "_tally",
+        "_violation_receivers",
+        "beat",
+        "generator",
+        "has_ended",
+        "number",
+        "policy",
+        "receive",
+        "receiver",
+        "stream",
+    )
 
     def __init__(
         self,
+        subscriptions: "Subscriptions",
         generator: StreamGenerator,
-        receiver: Label,
-        receive: Receive,
-        adapter: Adapter,
-        agenda: Agenda,
-        publish: Publish,
+        receiver: Receiver,
+        policy: Policy,
     ) -> None:
-        self._provider = generator.label
-        self._receiver = receiver
-        self._receive = receive
-        self._adapter = adapter
-        self._agenda = agenda
-        self._publish = publish
-        self._waiting: deque[Sample[Any]] = deque()
-        self._ticket = agenda.join(self, 2 * generator.depth + 1)
-        self._has_ended = False
-        self._plan()
+        self.generator = generator
+        self.receiver = receiver.label
+        self.number = receiver.number
+        self.receive = receiver.receive
+        self.beat = receiver.beat
+        self.policy = policy
+        self.stream: Stream | None = None
+        self.has_ended = False
+        self._account = receiver.account
+        self._subscriptions = subscriptions
+        self._tally: Tally | None = None
+        self._violation_receivers: list[ViolationReceiver] = []
+
+    def __repr__(self) -> str:
+        place = f"{self.receiver}/{self.number}" if self.number else self.receiver
+        return f"StreamProxy({self.provider} -> {place})"
 
     @property
-    def is_waiting(self) -> bool:
-        """Whether there are samples that will be available later."""
-        return bool(self._waiting)
+    def provider(self) -> Label:
+        """The label of the generator."""
+        return self.generator.label
+
+    @property
+    def statistics(self) -> Statistics:
+        """The figures of the stream; a replaced policy goes on with them."""
+        tally = self._tally if self.stream is None else self.stream.tally
+        return Statistics() if tally is None else tally.statistics
+
+    def replace_policy(self, policy: Policy) -> None:
+        """Receive the same stream under another policy, from the next time-point on.
+
+        During an instant, the change is made when the work of that instant is done. Nothing is
+        received twice, the order of valid times goes on across the change, and nothing that the
+        old policy has held back is lost.
+
+        Raises:
+            PolicyNotSupportedError: The process does not promise as much as *policy* needs.
+            ValueError: The stream has ended.
+        """
+        self._subscriptions.replace(self, policy)
 
     def end(self) -> None:
-        """Hand on nothing more and let no alarm ring."""
-        self._has_ended = True
-        self._waiting.clear()
+        """Receive nothing more, from the next time-point on; to end twice changes nothing.
 
-    def receive(self, sample: Sample[Any]) -> None:
-        """Take in a sample of the generator."""
-        self._hand_on(self._adapter.push(sample), sample.available_time)
+        Raises:
+            ValueError: The stream is an input of a process, which needs it.
+        """
+        if self.number:
+            raise ValueError(f"{self} is an input and ends with its process")
+        self._subscriptions.end(self)
 
-    def turn(self, now: TimePoint) -> None:
-        """Hand on what has become available and let the adapter's alarm ring."""
-        if self._has_ended:
-            return
-        while self._waiting and self._waiting[0].available_time <= now:
-            self._receive(self._waiting.popleft())
-        due = self._adapter.due()
-        produced = self._adapter.advance(now) if due is not None and due <= now else ()
-        self._hand_on(produced, now)
+    def subscribe_violations(self, receive: ViolationReceiver) -> Callable[[], None]:
+        """Hand every violation of the policy to *receive*; return what ends that."""
+        self._violation_receivers.append(receive)
+        return lambda: self._violation_receivers.remove(receive)
 
-    def _hand_on(self, samples: Iterable[Sample[Any]], now: TimePoint) -> None:
-        for sample in samples:
-            if sample.available_time <= now:
-                self._receive(sample)
+    def publish(self, violation: Violation) -> None:
+        """Take a violation of the policy and hand it to all who want it."""
+        if self._account is not None:
+            self._account.violations += 1
+        told = StreamViolation(self.provider, self.receiver, violation, self.number)
+        for receive in self._violation_receivers:
+            receive(told)
+        self._subscriptions.publish(told)
+
+    def attach(self, stream: Stream | None) -> None:
+        """Receive *stream* from now on, or nothing, in place of what was received before."""
+        if self.stream is not None:
+            self.stream.leave(self)
+            self._tally = self.stream.tally.copy() if stream is None else None
+        self.stream = stream
+        if stream is not None:
+            stream.join(self)
+
+
+class Subscriptions:
+    """All streams of a network."""
+
+    def __init__(self, agenda: Agenda, changes: Changes, publish: ViolationReceiver) -> None:
+        self.publish = publish
+        self._agenda = agenda
+        self._changes = changes
+        self._proxies: dict[StreamProxy, None] = {}
+        self._epoch = changes.epoch
+        self._shared: dict[Hashable, AdaptedStream] = {}
+
+    @property
+    def proxies(self) -> tuple[StreamProxy, ...]:
+        """The streams, in the order in which they were asked for."""
+        return tuple(self._proxies)
+
+    def check(self, generator: StreamGenerator, policy: Policy) -> None:
+        """Raise a PolicyNotSupportedError if the process does not promise enough for *policy*."""
+        reason = refusal(generator.output_policy, policy)
+        if reason is not None:
+            raise PolicyNotSupportedError(generator.label, reason)
+
+    def open(self, generator: StreamGenerator, receiver: Receiver, policy: Policy) -> StreamProxy:
+        """Hand the samples of a generator to a receiver under a policy.
+
+        Raises:
+            PolicyNotSupportedError: The process does not promise as much as *policy* needs, or
+                the stream would begin with samples that are no longer held.
+        """
+        self.check(generator, policy)
+        proxy = StreamProxy(self, generator, receiver, policy)
+        begins_in_the_past = policy.start is not None and not generator.is_fresh
+        stream = self._new_stream(generator, policy) if begins_in_the_past else None
+        self._proxies[proxy] = None
+        self._changes.make(lambda: self._begin(proxy, stream))
+        return proxy
+
+    def replace(self, proxy: StreamProxy, policy: Policy) -> None:
+        """Let a receiver go on under another policy."""
+        if proxy.has_ended:
+            raise ValueError(f"{proxy} has ended")
+        self.check(proxy.generator, policy)
+        self._changes.make(lambda: self._replace(proxy, policy))
+
+    def end(self, proxy: StreamProxy) -> None:
+        """Hand a receiver nothing more."""
+        if not proxy.has_ended:
+            proxy.has_ended = True
+            del self._proxies[proxy]
+            self._changes.make(lambda: self._attach(proxy, None))
+
+    def _begin(self, proxy: StreamProxy, stream: AdaptedStream | None) -> None:
+        generator = proxy.generator
+        if stream is not None:
+            self._attach(proxy, stream)
+        elif proxy.policy == ANYTHING and generator.is_fresh:
+            self._attach(proxy, PlainStream(generator))
+        else:
+            self._attach(proxy, self._new_stream(generator, proxy.policy))
+
+    def _replace(self, proxy: StreamProxy, policy: Policy) -> None:
+        if policy != proxy.policy:
+            stream = self._new_stream(proxy.generator, policy, proxy.stream)
+            proxy.policy = policy
+            self._attach(proxy, stream)
+
+    def _attach(self, proxy: StreamProxy, stream: Stream | None) -> None:
+        old = proxy.stream
+        proxy.attach(stream)
+        if old is not None and old.is_empty:
+            self._shared.clear()
+
+    def _new_stream(
+        self, generator: StreamGenerator, policy: Policy, predecessor: Stream | None = None
+    ) -> AdaptedStream:
+        """Return a stream that begins now, which may have been made for another receiver."""
+        key = (generator, policy, predecessor)
+        if self._epoch != self._changes.epoch:
+            self._epoch = self._changes.epoch
+            self._shared.clear()
+        stream = self._shared.get(key)
+        if stream is None:
+            stream = AdaptedStream(generator, policy, self._agenda, self._changes.begin)
+            if predecessor is None:
+                stream.begin_in_the_past()
             else:
-                self._waiting.append(sample)
-        for violation in self._adapter.take_violations():
-            self._publish(StreamViolation(self._provider, self._receiver, violation))
-        self._plan()
-
-    def _plan(self) -> None:
-        due = self._adapter.due()
-        if due is not None:
-            self._agenda.wake(self._ticket, due)
-        if self._waiting:
-            self._agenda.wake(self._ticket, self._waiting[0].available_time)
+                stream.carry_on(predecessor)
+            self._shared[key] = stream
+        return stream

@@ -349,7 +349,7 @@ def test_a_subscription_can_be_ended():
     end = kernel.subscribe(Label("a"), received.append)
 
     kernel.run(until=ms(1))
-    end()
+    end.end()
     kernel.run()
 
     assert text(received) == "0:a"
@@ -369,7 +369,7 @@ def test_the_alarms_of_an_ended_subscription_are_silent():
     end = kernel.subscribe(Label("a"), received.append, policy)
 
     kernel.run(until=ms(15))
-    end()
+    end.end()
     kernel.run(until=ms(50))
 
     assert text(received) == "0:a 10:a"

@@ -1,0 +1,150 @@
+"""The last samples of a stream generator, and the questions that can be asked of them.
+
+The questions are those of the stream generator interfaces of Heintz (2009), *DyKnow: A
+Stream-Based Knowledge Processing Middleware Framework*, section 5.3.2. A question about valid
+times looks at every sample that is held.
+"""
+
+from collections import deque
+from collections.abc import Sequence
+from typing import Any, NewType
+
+from dyknow.errors import ValueNotAvailableError
+from dyknow.streams.sample import Sample
+from dyknow.time import TimePoint, text_from_duration
+
+__all__ = ["CACHE_SIZE", "NEVER", "CachedStream", "Label"]
+
+Label = NewType("Label", str)
+"""The name of a stream generator as KPL writes it, such as `cars` or `percepts[vision]`."""
+
+NEVER = TimePoint(-(1 << 63))
+"""Earlier than every valid time."""
+
+CACHE_SIZE = 8
+"""How many samples are held where nobody says otherwise: few, since a sample may be an image."""
+
+
+class CachedStream:
+    """The newest samples of a stream, in order of available time.
+
+    Attributes:
+        label: The name of the generator whose samples these are.
+    """
+
+    __slots__ = ("_cache", "_lost", "label")
+
+    def __init__(self, label: Label, capacity: int = CACHE_SIZE) -> None:
+        """Hold up to *capacity* samples."""
+        self.label = label
+        self._cache: deque[Sample[Any]] = deque(maxlen=_checked(capacity))
+        self._lost = NEVER
+
+    @property
+    def size(self) -> int:
+        """How many samples are held."""
+        return len(self._cache)
+
+    @property
+    def capacity(self) -> int:
+        """How many samples can be held; it can be set, and when it shrinks the oldest go."""
+        return self._cache.maxlen or 0
+
+    @capacity.setter
+    def capacity(self, capacity: int) -> None:
+        held, self._cache = self._cache, deque(maxlen=_checked(capacity))
+        for sample in held:
+            self._hold(sample)
+
+    @property
+    def samples(self) -> tuple[Sample[Any], ...]:
+        """All samples that are held, in order of available time."""
+        return tuple(self._cache)
+
+    def latest(self) -> Sample[Any]:
+        """Return the sample with the highest available time.
+
+        Raises:
+            ValueNotAvailableError: No sample is held.
+        """
+        return self.nth_latest(0)
+
+    def nth_latest(self, n: int) -> Sample[Any]:
+        """Return the *n*th latest sample; number 0 is the latest.
+
+        Raises:
+            ValueNotAvailableError: So many samples are not held.
+        """
+        if not 0 <= n < len(self._cache):
+            raise ValueNotAvailableError(self.label, f"latest sample number {n}")
+        return self._cache[-1 - n]
+
+    def slice(self, first: int, last: int) -> Sequence[Sample[Any]]:
+        """Return the samples from number *first* to number *last*, inclusive; 0 is the oldest.
+
+        Raises:
+            ValueNotAvailableError: Not all of them are held.
+        """
+        for number in (first, last):
+            if not 0 <= number < len(self._cache):
+                raise ValueNotAvailableError(self.label, f"sample number {number}")
+        return [self._cache[number] for number in range(first, last + 1)]
+
+    def latest_valid(self) -> Sample[Any]:
+        """Return the sample with the highest valid time; of several, the latest.
+
+        Raises:
+            ValueNotAvailableError: No sample is held.
+        """
+        if not self._cache:
+            raise ValueNotAvailableError(self.label, "sample")
+        return max(reversed(self._cache), key=_valid_time)
+
+    def closest_at_or_before(self, time: TimePoint) -> Sample[Any]:
+        """Return the sample with the highest valid time up to *time*; of several, the latest.
+
+        Raises:
+            ValueNotAvailableError: No such sample is held.
+        """
+        found = self.find_at_or_before(time)
+        if found is None:
+            wanted = f"sample with a valid time up to {text_from_duration(time)}"
+            raise ValueNotAvailableError(self.label, wanted)
+        return found
+
+    def find_at_or_before(self, time: TimePoint) -> Sample[Any] | None:
+        """Return what `closest_at_or_before` returns, or None if there is no such sample."""
+        candidates = (sample for sample in reversed(self._cache) if sample.valid_time <= time)
+        return max(candidates, key=_valid_time, default=None)
+
+    def between(self, first: TimePoint, last: TimePoint) -> Sequence[Sample[Any]]:
+        """Return all samples with valid times from *first* to *last*, inclusive."""
+        return [sample for sample in self._cache if first <= sample.valid_time <= last]
+
+    def reset(self) -> None:
+        """Forget all samples."""
+        while self._cache:
+            self._lose(self._cache.popleft())
+
+    def holds_all_since(self, time: TimePoint) -> bool:
+        """Return whether every sample so far with a valid time from *time* on is held."""
+        return self._lost < time
+
+    def _hold(self, sample: Sample[Any]) -> None:
+        cache = self._cache
+        if len(cache) == cache.maxlen:
+            self._lose(cache[0])
+        cache.append(sample)
+
+    def _lose(self, sample: Sample[Any]) -> None:
+        self._lost = max(self._lost, sample.valid_time)
+
+
+def _checked(capacity: int) -> int:
+    if capacity < 1:
+        raise ValueError(f"a cache holds at least one sample, found a capacity of {capacity}")
+    return capacity
+
+
+def _valid_time(sample: Sample[Any]) -> TimePoint:
+    return sample.valid_time
