@@ -30,6 +30,7 @@ from dyknow.mtl.syntax import Formula
 from dyknow.runtime import generators
 from dyknow.runtime.generators import Receive
 from dyknow.runtime.kernel import Kernel
+from dyknow.runtime.subscriptions import StreamProxy
 from dyknow.source_text import MADE_IN_PYTHON, Span, nearest_name
 from dyknow.streams import synchronisation
 from dyknow.streams.policy import Policy
@@ -96,10 +97,8 @@ class Network:
         """The names of the output streams, in the order of their declarations."""
         return tuple(self._streams)
 
-    def subscribe(self, output: str, receive: Receive) -> Callable[[], None]:
+    def subscribe(self, output: str, receive: Receive) -> StreamProxy:
         """Hand the samples of an output stream to *receive*, under its declared policy.
-
-        Return what ends the subscription.
 
         Raises:
             ValueError: There is no output of this name.
