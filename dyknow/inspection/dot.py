@@ -18,10 +18,11 @@ _COLOURS = {
     Kind.SOURCE: "#2f7d5b",
     Kind.UNIT: "#3a6fb0",
     Kind.LINK: "#8a55b5",
-    Kind.SYNC: "#c07a1c",
-    Kind.STATE: "#c07a1c",
-    Kind.MERGE: "#c07a1c",
-    Kind.SELECT: "#c07a1c",
+    Kind.SYNCHRONISATION: "#c07a1c",
+    Kind.MERGING: "#c07a1c",
+    Kind.SELECTION: "#c07a1c",
+    Kind.VIEW: "#c07a1c",
+    Kind.MEDIATION: "#c07a1c",
 }
 _OTHER = "#6b7686"
 _BAD = "#c62828"

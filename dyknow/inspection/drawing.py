@@ -5,7 +5,7 @@ receiver. The picture follows a light or dark page, its texts can be selected, a
 a box or an arrow tells all that is known of it.
 """
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from html import escape
 from typing import Final
 
@@ -90,16 +90,17 @@ _CLASS_BY_KIND: Final = {
     Kind.SOURCE: "source",
     Kind.UNIT: "unit",
     Kind.LINK: "link",
-    Kind.SYNC: "sync",
-    Kind.STATE: "sync",
-    Kind.MERGE: "sync",
-    Kind.SELECT: "sync",
+    Kind.SYNCHRONISATION: "sync",
+    Kind.MERGING: "sync",
+    Kind.SELECTION: "sync",
+    Kind.VIEW: "sync",
+    Kind.MEDIATION: "sync",
 }
 _LEGEND: Final = (
     ("source", "source"),
     ("unit", "computational unit"),
     ("link", "link process"),
-    ("sync", "state, merge, select"),
+    ("sync", "state, selection, mediation"),
     ("other", "process"),
 )
 
@@ -132,13 +133,21 @@ class _Picture:
     def __init__(self, snapshot: Snapshot) -> None:
         self._snapshot = snapshot
         self._total = snapshot.seconds or 1.0
-        depth = {process.label: process.depth for process in snapshot.processes}
-        self._streams = [s for s in snapshot.streams if s.provider in depth]
+        layer = {process.label: process.depth for process in snapshot.processes}
+        self._streams = [
+            s
+            for s in snapshot.streams
+            if s.provider in layer and (s.is_output or s.receiver in layer)
+        ]
+        _push_right(layer, [s for s in self._streams if not s.is_output])
         self._outputs = {_node_of(s): s for s in self._streams if s.is_output}
         heads = [_node_of(stream) for stream in self._streams]
-        boxes = [self._process_box(p, heads.count(p.label)) for p in snapshot.processes]
+        boxes = [
+            self._process_box(process, layer[process.label], heads.count(process.label))
+            for process in snapshot.processes
+        ]
         for name, stream in self._outputs.items():
-            boxes.append(_output_box(name, stream, depth[stream.provider] + 1))
+            boxes.append(_output_box(name, stream, layer[stream.provider] + 1))
         arrows = [Arrow(s.provider, _node_of(s), s.number) for s in self._streams]
         self._box = {box.name: box for box in boxes}
         self.layout: Layout = lay_out(boxes, arrows, gap=_GAP, spacing=_SPACING)
@@ -157,12 +166,12 @@ class _Picture:
         for stream, route in zip(self._streams, self.layout.routes, strict=True):
             yield from _figures(stream, *route[-1])
 
-    def _process_box(self, process: ProcessFigures, n_inputs: int) -> Box:
+    def _process_box(self, process: ProcessFigures, layer: int, n_inputs: int) -> Box:
         facts = [_text_width(text, _SMALL_SIZE) for text in self._facts(process)]
         label = _text_width(_short(process.label), _LABEL_SIZE)
         width = max(label, *facts) + 2 * _PADDING + 4
         height = max(_BOX_HEIGHT, _PORT_PITCH * (n_inputs + 1))
-        return Box(process.label, process.depth, width, height)
+        return Box(process.label, layer, width, height)
 
     def _facts(self, process: ProcessFigures) -> tuple[str, str]:
         share = process.seconds / self._total
@@ -198,6 +207,16 @@ class _Picture:
         text = _short(stream.receiver)
         yield _text("label", x + box.width / 2, y + box.height / 2 + 4, text, "middle")
         yield "</g>"
+
+
+def _push_right(layer: dict[str, int], streams: Sequence[StreamFigures]) -> None:
+    """Move processes to the right of those that feed them, where their depth does not do so.
+
+    A process that follows others while the network runs may have got a deeper one to follow.
+    """
+    for _ in layer:
+        for stream in streams:
+            layer[stream.receiver] = max(layer[stream.receiver], layer[stream.provider] + 1)
 
 
 def _node_of(stream: StreamFigures) -> str:

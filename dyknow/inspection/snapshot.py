@@ -7,7 +7,7 @@ Processing Middleware Framework*, section 1.3: "introspection" is one of the six
 A snapshot can be written to a file and read again, and two of them have a difference.
 """
 
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from enum import StrEnum
 from typing import Final
 
@@ -23,15 +23,16 @@ START: Final = TimePoint(0)
 
 
 class Kind(StrEnum):
-    """What sort of knowledge process stands behind a label."""
+    """What sort of knowledge process stands behind a label; `process` if that is not known."""
 
     SOURCE = "source"
     UNIT = "unit"
     LINK = "link"
-    SYNC = "sync"
-    SELECT = "select"
-    MERGE = "merge"
-    STATE = "state"
+    SYNCHRONISATION = "synchronisation"
+    MERGING = "merging"
+    SELECTION = "selection"
+    VIEW = "view"
+    MEDIATION = "mediation"
     PROCESS = "process"
 
 
@@ -79,7 +80,7 @@ class StreamFigures:
     Attributes:
         provider: The label of the generator.
         receiver: The label of the process that it feeds, or the name of an output.
-        number: Which input of the receiver it is, from 0; 0 for an output.
+        number: Which input of the receiver it is, from 1; 0 for an output.
         policy: What the receiver requires, as KPL writes it; empty if nothing.
         is_output: Whether it leaves the network.
         samples: How many samples were handed on.
@@ -92,7 +93,7 @@ class StreamFigures:
 
     provider: str
     receiver: str
-    number: int = 0
+    number: int = 1
     policy: str = ""
     is_output: bool = False
     samples: int = 0
@@ -104,8 +105,8 @@ class StreamFigures:
 
     @property
     def name(self) -> str:
-        """What violations and recordings call the stream, such as `cars/0`."""
-        return f"{self.receiver}/{self.number}"
+        """What recordings call the stream, such as `cars/1` or `output/cars`."""
+        return f"output/{self.receiver}" if self.is_output else f"{self.receiver}/{self.number}"
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -175,7 +176,8 @@ class Snapshot:
 
     def to_json(self) -> str:
         """Write the snapshot as a JSON document; times are nanoseconds."""
-        return _DOCUMENT.dump_json(_Document(network=self), indent=1).decode() + "\n"
+        document = _Document(format=FORMAT, version=VERSION, network=self)
+        return _DOCUMENT.dump_json(document, indent=1).decode() + "\n"
 
     @staticmethod
     def from_json(text: str | bytes) -> "Snapshot":
@@ -185,27 +187,36 @@ class Snapshot:
             ValueError: The text is something else, or of another version.
         """
         try:
-            document = _DOCUMENT.validate_json(text)
+            header = _HEADER.validate_json(text)
+            if (header.format, header.version) == (FORMAT, VERSION):
+                return _DOCUMENT.validate_json(text).network
         except ValidationError as error:
             fault = error.errors()[0]
             where = ".".join(map(str, fault["loc"]))
             message = f"{where}: {fault['msg']}" if where else fault["msg"]
             raise ValueError(f"not a snapshot of a network: {message}") from error
-        if document.format != FORMAT or document.version != VERSION:
-            found = f"'{document.format}' version {document.version}"
-            raise ValueError(f"expected '{FORMAT}' version {VERSION}, found {found}")
-        return document.network
+        found = f"'{header.format}' version {header.version}"
+        raise ValueError(f"expected '{FORMAT}' version {VERSION}, found {found}")
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class _Header:
+    """What says how to read a document."""
+
+    format: str
+    version: int
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class _Document:
-    """A snapshot with what says how to read it."""
+    """A snapshot under its header."""
 
-    format: str = FORMAT
-    version: int = VERSION
-    network: Snapshot = field(default_factory=Snapshot)
+    format: str
+    version: int
+    network: Snapshot
 
 
+_HEADER: Final = TypeAdapter(_Header)
 _DOCUMENT: Final = TypeAdapter(_Document)
 
 
