@@ -105,10 +105,13 @@ class Score(_Value):
 class Lateness(_Value):
     """How a run kept to the clock on the wall.
 
+    The work of an instant is done late by the time from the instant until that.
+
     Attributes:
-        max_ms: The most that the work of an instant began after its time, milliseconds.
+        max_ms: The most, milliseconds.
         mean_ms: Over all instants.
-        late_share: Share of the instants whose work began late.
+        late_share: Share of the instants whose work was not done one step of the simulation
+            after them.
     """
 
     max_ms: float

@@ -10,6 +10,7 @@ from pathlib import Path
 from chronicles.events import Recognition
 from dyknow.kpl.names import Declarations
 from dyknow.kpl.syntax import Specification
+from dyknow.runtime.clock import WallClock
 from dyknow.runtime.subscriptions import StreamViolation
 from dyknow.streams.sample import Sample
 from dyknow.streams.table import Table
@@ -18,10 +19,10 @@ from networks.reading import read_road_map
 from networks.roads import RoadMap
 from perception.camera import Camera
 from traffic.errors import RequestError
-from traffic.origin import origin_of, write_origin
+from traffic.origin import Origin, origin_of, write_origin
 from traffic.overlaying import Overlay
 from traffic.request import DEFAULT_PERIOD, RunRequest, View
-from traffic.results import RunResult, Timing, new_folder, run_folder, write_result
+from traffic.results import Lateness, RunResult, Timing, new_folder, run_folder, write_result
 from traffic.scoring.score import Scorer, Verdict, unjudged
 from traffic.sumo.opening import network_of, open_simulation
 from traffic.sumo.simulation import Frame, Simulation
@@ -34,7 +35,7 @@ from traffic.system import (
 )
 from traffic.world import World, camera_of, generators_of
 
-__all__ = ["OnProgress", "Told", "Watch", "run_scenario"]
+__all__ = ["OnProgress", "Told", "Watch", "run_scenario", "told_of"]
 
 _CARS = "cars"
 _RECOGNITIONS = "recognitions"
@@ -52,11 +53,13 @@ class Told:
         scenario: Name of the scenario.
         settings: What was asked for.
         duration: How long the run is to be.
+        deadline: In real time, how late the work of an instant may be done.
     """
 
     scenario: str
     settings: Mapping[str, str | int | float | None]
     duration: Duration
+    deadline: Duration
 
 
 def run_scenario(request: RunRequest, on_progress: OnProgress) -> tuple[RunResult, Path]:
@@ -82,10 +85,11 @@ def run_scenario(request: RunRequest, on_progress: OnProgress) -> tuple[RunResul
         world = World(road_map, vehicles, camera, sensors)
         system = _system(request, specification, world)
         files = (request.specification or bundled_specification(), *system.files)
-        write_origin(origin_of(request, system.files), files, folder)
+        origin = origin_of(request, system.files)
+        write_origin(origin, files, folder)
         watch = Watch(system, scorer)
         with _film(request, camera, watch):
-            result = watch.complete(_told(request), on_progress)
+            result = watch.complete(told_of(origin), on_progress, real_time=request.real_time)
         write_result(result, folder)
     return result, path
 
@@ -132,10 +136,13 @@ class Watch:
         told: Told,
         on_progress: OnProgress,
         on_time: Callable[[TimePoint], None] | None = None,
+        *,
+        real_time: bool = False,
     ) -> RunResult:
         """Run to the end and judge what was recognised.
 
-        *on_time* is told each instant before its work begins.
+        *on_time* is told each instant before its work begins. In *real_time* an instant is
+        worked on when it is that time on the clock on the wall; nothing else changes.
         """
         total = told.duration / SECOND
 
@@ -145,8 +152,9 @@ class Watch:
             on_progress(now / SECOND, total)
 
         kernel = self._network.kernel
+        clock = WallClock(told.deadline) if real_time else None
         began = time.perf_counter()
-        kernel.run(TimePoint(told.duration), tell)
+        kernel.run(TimePoint(told.duration), tell, clock)
         wall = time.perf_counter() - began
         verdict = self._verdict()
         return RunResult(
@@ -160,6 +168,7 @@ class Watch:
                 wall_s=wall,
                 real_time_factor=total / wall,
                 stages={str(label): each.seconds for label, each in kernel.accounts.items()},
+                lateness=_lateness(clock) if clock is not None else None,
             ),
             violations=dict(self._violations),
         )
@@ -246,13 +255,23 @@ def _parameters(request: RunRequest, specification: Specification) -> dict[str, 
     return {name: value for name, value in values.items() if name in declared}
 
 
-def _told(request: RunRequest) -> Told:
-    is_truth = request.view is View.TRUTH
+def told_of(origin: Origin) -> Told:
+    """Return what a result says of a run with this origin."""
+    asked, scenario = origin.request, origin.scenario
     settings: dict[str, str | int | float | None] = {
-        "view": str(request.view),
-        "seed": request.seed,
-        "sample period ms": request.sample_period / MILLISECOND,
-        "position noise m": request.position_noise if is_truth else None,
-        "duration s": request.scenario.duration / SECOND,
+        "view": asked["view"],
+        "seed": asked["seed"],
+        "sample period ms": int(asked["sample_period_ns"] or 0) / MILLISECOND,
+        "position noise m": asked["position_noise"] if asked["view"] == View.TRUTH else None,
+        "duration s": scenario.duration / SECOND,
     }
-    return Told(request.scenario.name, settings, request.scenario.duration)
+    return Told(scenario.name, settings, scenario.duration, scenario.step_length)
+
+
+def _lateness(clock: WallClock) -> Lateness:
+    late = clock.lateness
+    return Lateness(
+        max_ms=late.largest / MILLISECOND,
+        mean_ms=late.mean / MILLISECOND,
+        late_share=clock.n_missed / late.samples if late.samples else 0.0,
+    )

@@ -35,6 +35,7 @@ from dyknow.kpl.syntax import (
     SourceInstance,
     Specification,
     StreamDeclaration,
+    StreamTerm,
     UnitDeclaration,
     UnitInstance,
 )
@@ -225,12 +226,16 @@ def read_specification(path: Path | None = None) -> Specification:
 
 
 def image_labels(specification: Specification) -> frozenset[str]:
-    """Return the labels of the generators of images, and of states of images."""
+    """Return the labels of all generators of images, and of states of images."""
     sorts = _Sorts(specification)
+    made = {text_from(each.label): each.process for each in sorts.generators}
+    used = {
+        text_from(each.provider): each.provider
+        for each in descendants(specification.declarations)
+        if isinstance(each, StreamTerm)
+    }
     return frozenset(
-        text_from(generator.label)
-        for generator in sorts.generators
-        if sorts.of(generator.process) & _IMAGE_SORTS
+        label for label, process in {**used, **made}.items() if sorts.of(process) & _IMAGE_SORTS
     )
 
 

@@ -158,8 +158,8 @@ def _timing(result: RunResult) -> Table:
     if timing.lateness is not None:
         late = timing.lateness
         table.caption = (
-            f"late by {late.mean_ms:.1f} ms on average, {late.max_ms:.1f} ms at most; "
-            f"{late.late_share:.1%} of the instants began late"
+            f"done {late.mean_ms:.1f} ms after each instant on average, {late.max_ms:.1f} ms "
+            f"at most; {late.late_share:.1%} of the instants missed the deadline"
         )
     total = sum(timing.stages.values()) or 1.0
     for stage, spent in sorted(timing.stages.items(), key=lambda item: -item[1]):

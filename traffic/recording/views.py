@@ -6,7 +6,7 @@ the frame `map`, which is the world frame: metres, x east, y north, z up.
 
 import colorsys
 import math
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable
 from functools import lru_cache
 
 import numpy as np
@@ -41,7 +41,7 @@ __all__ = [
     "JPEG_QUALITY",
     "CarScenes",
     "image_view",
-    "logs_of_recognitions",
+    "log_of_recognitions",
     "pose_of_camera",
     "scene_of_map",
     "transform_of_camera",
@@ -143,16 +143,20 @@ def image_view(sample: Sample[Image]) -> CompressedImage:
     )
 
 
-def logs_of_recognitions(sample: Sample[tuple[Recognition, ...]]) -> Iterator[Log]:
-    """Yield a line of a log for each recognition."""
-    for recognition in sample.value:
-        who = ", ".join(recognition.arguments.values())
-        yield Log(
-            timestamp=_timestamp(sample.available_time),
-            level=Log.INFO,
-            name=recognition.chronicle,
-            message=f"{recognition.chronicle.replace('_', ' ')}: {who}",
-        )
+def log_of_recognitions(sample: Sample[tuple[Recognition, ...]]) -> Log | None:
+    """Return the recognitions of a sample as a message of a log, a line each; None for none."""
+    if not sample.value:
+        return None
+    lines = [
+        f"{each.chronicle.replace('_', ' ')}: {', '.join(each.arguments.values())}"
+        for each in sample.value
+    ]
+    return Log(
+        timestamp=_timestamp(sample.available_time),
+        level=Log.INFO,
+        name="recognised",
+        message="\n".join(lines),
+    )
 
 
 def _box(

@@ -18,7 +18,7 @@ from traffic.bundled import data_folder
 from traffic.recording.views import (
     CarScenes,
     image_view,
-    logs_of_recognitions,
+    log_of_recognitions,
     pose_of_camera,
     scene_of_map,
     transform_of_camera,
@@ -130,8 +130,12 @@ def test_images_are_jpeg(shape):
 
 
 def test_recognitions_are_lines_of_a_log():
-    """One for each, at the time at which it was recognised."""
-    recognition = Recognition("turn_left", {"c": "car7", "x": "centre"}, {}, (), 0, 1, 2)
-    (log,) = logs_of_recognitions(Sample((recognition,), 1, 2_000_000_000))
+    """One for each, at the time at which they were recognised; nothing if there are none."""
+    one = Recognition("turn_left", {"c": "car7", "x": "centre"}, {}, (), 0, 1, 2)
+    other = Recognition("overtake", {"c1": "car1", "c2": "car2"}, {}, (), 0, 1, 2)
+    log = log_of_recognitions(Sample((one, other), 1, 2_000_000_000))
 
-    assert (log.message, log.timestamp.seconds) == ("turn left: car7, centre", 2)
+    assert log is not None
+    assert log.message == "turn left: car7, centre\novertake: car1, car2"
+    assert log.timestamp.seconds == 2
+    assert log_of_recognitions(Sample((), 1, 2)) is None
