@@ -8,7 +8,10 @@ from dyknow.runtime.generators import Label
 from dyknow.streams.policy import Policy
 from dyknow.streams.process import ComputationalUnit, Source
 
-__all__ = ["ANYTHING", "DeclaredNetwork", "DeclaredProcess", "DeclaredStream"]
+__all__ = ["ANYTHING", "OUTPUT", "DeclaredNetwork", "DeclaredProcess", "DeclaredStream"]
+
+OUTPUT = Label("output")
+"""The receiver of all output streams."""
 
 ANYTHING = Policy()
 """The policy that restricts nothing."""
@@ -22,11 +25,32 @@ class DeclaredStream:
         topic: `RECEIVER/NUMBER` or `output/NAME`.
         provider: The label of the generator.
         policy: What the stream must keep.
+        receiver: The label of the process that receives it, or `output`.
+        number: Which input of the receiver, counted from 1; 0 for an output.
     """
 
     topic: str
     provider: Label
     policy: Policy
+    receiver: Label
+    number: int
+
+    @classmethod
+    def input(
+        cls, receiver: Label, number: int, provider: Label, policy: Policy
+    ) -> "DeclaredStream":
+        """Return an input stream of a process."""
+        return cls(f"{receiver}/{number}", provider, policy, receiver, number)
+
+    @classmethod
+    def output(cls, name: str, provider: Label, policy: Policy) -> "DeclaredStream":
+        """Return an output stream of the application."""
+        return cls(f"{OUTPUT}/{name}", provider, policy, OUTPUT, 0)
+
+    @property
+    def is_output(self) -> bool:
+        """Whether the application receives the stream."""
+        return self.receiver == OUTPUT
 
 
 @dataclass(frozen=True, slots=True)

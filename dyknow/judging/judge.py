@@ -15,7 +15,7 @@ from dyknow.judging.comparing import Comparison
 from dyknow.judging.declared import DeclaredNetwork, DeclaredProcess, DeclaredStream
 from dyknow.judging.execution import Execution
 from dyknow.judging.judgement import Basis, Breach, Definition, Finding, Judgement, Tally
-from dyknow.judging.published import PublishedViolations
+from dyknow.judging.published import PublishedViolations, ViolatedStream
 from dyknow.judging.recomputing import Recomputation, unknown_behind
 from dyknow.judging.streams import KnownStreams
 from dyknow.judging.terms import TermBreaches, policy_breaches
@@ -28,8 +28,6 @@ __all__ = ["KEPT", "judge"]
 
 KEPT = 10
 """How many breaches of each stream are kept unless the caller says otherwise."""
-
-_OUTPUT = Label("output")
 
 
 def judge(network: DeclaredNetwork, execution: Execution, keep: int = KEPT) -> Judgement:
@@ -73,7 +71,7 @@ class _Judge:
     def __init__(self, network: DeclaredNetwork, execution: Execution, keep: int) -> None:
         self._network = network
         self._streams = KnownStreams(execution)
-        self._until = execution.until
+        self._until = self._streams.until
         self._keep = keep
         self._violations = execution.violations()
         self._published = PublishedViolations(self._violations or ())
@@ -82,9 +80,9 @@ class _Judge:
     def judgement(self) -> Judgement:
         findings: list[Finding] = []
         for process in self._network.processes.values():
-            findings.extend(self._term(stream, process.label) for stream in process.inputs)
+            findings.extend(map(self._term, process.inputs))
             findings.append(self._generator(process))
-        findings.extend(self._term(stream, _OUTPUT) for stream in self._network.outputs)
+        findings.extend(map(self._term, self._network.outputs))
         findings.append(self._violation_streams())
         return Judgement(tuple(findings))
 
@@ -102,7 +100,7 @@ class _Judge:
         else:
             draft.unjudged.append("it was not recorded")
         if draft.basis is Basis.NOTHING:
-            self._published.leave_open(label, label)
+            self._published.leave_open((label, label, 0))
         return self._finished(draft)
 
     def _wellformed(self, process: DeclaredProcess) -> Iterable[Breach]:
@@ -112,7 +110,7 @@ class _Judge:
         yield from heartbeat_breaches(label, samples, self._streams.heartbeats(label))
         if process.sort_test is not None:
             yield from sort_breaches(label, samples, process.sort_test, process.sort)
-        promise = DeclaredStream(label, label, process.promise)
+        promise = DeclaredStream(label, label, process.promise, label, 0)
         yield from policy_breaches(promise, self._streams[label], ())
 
     def _reasons_against_computing(self, process: DeclaredProcess) -> list[str]:
@@ -136,7 +134,7 @@ class _Judge:
         draft.tally.merge(answer.tally)
         draft.basis = answer.basis
         violations = [each.violation for each in answer.violations]
-        self._published.expect(process.label, process.label, violations)
+        self._published.expect((process.label, process.label, 0), violations)
 
     def _answer(self, process: DeclaredProcess, distrusted: Iterable[str]) -> "_Answer":
         label = process.label
@@ -154,9 +152,9 @@ class _Judge:
         answer.basis, answer.violations = recomputation.basis, recomputation.violations
         return answer
 
-    def _term(self, stream: DeclaredStream, receiver: Label) -> Finding:
+    def _term(self, stream: DeclaredStream) -> Finding:
         """Judge a stream term (definitions 4.5.9 to 4.5.12)."""
-        definition = Definition.STREAM if receiver == _OUTPUT else Definition.TERM
+        definition = Definition.STREAM if stream.is_output else Definition.TERM
         draft = _Draft(stream.topic, definition, self._keep)
         if stream.topic in self._streams:
             draft.samples = len(self._streams.as_recorded(stream.topic))
@@ -164,24 +162,24 @@ class _Judge:
         else:
             draft.unjudged.append("it was not recorded")
         if stream.provider in self._streams:
-            self._adapt(stream, receiver, draft)
+            self._adapt(stream, draft)
         else:
-            self._published.leave_open(stream.provider, receiver)
+            self._published.leave_open(_violated(stream))
             draft.unjudged.append(f"'{stream.provider}', of which it is made, was not recorded")
         return self._finished(draft)
 
-    def _adapt(self, stream: DeclaredStream, receiver: Label, draft: _Draft) -> None:
+    def _adapt(self, stream: DeclaredStream, draft: _Draft) -> None:
         """Compare a stream with what its policy allows to make of the provider's samples."""
         adapted: list[Sample[Any]] = []
         recomputation = Recomputation(self._network, self._streams)
         recomputation.run_input(stream, adapted.append, self._until)
         violations = [each.violation for each in recomputation.violations]
-        self._published.expect(stream.provider, receiver, violations)
+        self._published.expect(_violated(stream), violations)
         if stream.topic not in self._streams:
             return
         draft.basis = Basis.RECORDED
         recorded, provider = self._streams[stream.topic], self._streams[stream.provider]
-        published = self._published.of(stream.provider, receiver)
+        published = self._published.of(_violated(stream))
         term = TermBreaches(stream, recorded, provider, adapted, published, self._until)
         draft.tally.add(term.all())
         draft.tally.add(policy_breaches(stream, recorded, published))
@@ -209,6 +207,10 @@ class _Answer:
         self.tally = Tally(keep)
         self.basis = Basis.NOTHING
         self.violations: Sequence[StreamViolation] = ()
+
+
+def _violated(stream: DeclaredStream) -> ViolatedStream:
+    return stream.provider, stream.receiver, stream.number
 
 
 def _failure(label: Label, definition: Definition, error: ProcessError) -> Breach:

@@ -12,10 +12,10 @@ from dyknow.runtime.subscriptions import StreamViolation
 from dyknow.streams.policy import Violation
 from dyknow.time import text_from_duration
 
-__all__ = ["PublishedViolations"]
+__all__ = ["PublishedViolations", "ViolatedStream"]
 
-Stream = tuple[Label, Label]
-"""Provider and receiver, by which violations know their stream."""
+ViolatedStream = tuple[Label, Label, int]
+"""Provider, receiver and number of the input, by which violations know their stream."""
 
 
 class PublishedViolations:
@@ -26,23 +26,24 @@ class PublishedViolations:
     """
 
     def __init__(self, violations: Iterable[StreamViolation]) -> None:
-        self._published: dict[Stream, list[Violation]] = {}
-        self._expected: dict[Stream, list[Violation]] = {}
-        self._unknown: set[Stream] = set()
+        self._published: dict[ViolatedStream, list[Violation]] = {}
+        self._expected: dict[ViolatedStream, list[Violation]] = {}
+        self._unknown: set[ViolatedStream] = set()
         for each in violations:
-            self._published.setdefault((each.provider, each.receiver), []).append(each.violation)
+            stream = each.provider, each.receiver, each.number
+            self._published.setdefault(stream, []).append(each.violation)
 
-    def of(self, provider: Label, receiver: Label) -> list[Violation]:
-        """Return what was published of the streams from *provider* to *receiver*."""
-        return self._published.get((provider, receiver), [])
+    def of(self, stream: ViolatedStream) -> list[Violation]:
+        """Return what was published of a stream."""
+        return self._published.get(stream, [])
 
-    def expect(self, provider: Label, receiver: Label, violations: Iterable[Violation]) -> None:
-        """Take in what should have been published of one of these streams."""
-        self._expected.setdefault((provider, receiver), []).extend(violations)
+    def expect(self, stream: ViolatedStream, violations: Iterable[Violation]) -> None:
+        """Take in what should have been published of a stream, or of one of several alike."""
+        self._expected.setdefault(stream, []).extend(violations)
 
-    def leave_open(self, provider: Label, receiver: Label) -> None:
-        """Note that nobody can tell what should have been published of these streams."""
-        self._unknown.add((provider, receiver))
+    def leave_open(self, stream: ViolatedStream) -> None:
+        """Note that nobody can tell what should have been published of a stream."""
+        self._unknown.add(stream)
 
     def breaches(self) -> Iterator[Breach]:
         """Yield what is missing and what is too much, stream by stream."""
@@ -50,7 +51,7 @@ class PublishedViolations:
             if stream not in self._unknown:
                 yield from self._breaches_of(stream)
 
-    def _breaches_of(self, stream: Stream) -> Iterator[Breach]:
+    def _breaches_of(self, stream: ViolatedStream) -> Iterator[Breach]:
         expected = {_key(each): each for each in self._expected.get(stream, [])}
         published = {_key(each): each for each in self._published.get(stream, [])}
         for key in sorted(expected.keys() | published.keys(), key=lambda key: (key[2], key[1])):
@@ -71,8 +72,8 @@ def _text(violation: Violation) -> str:
     return f"{violation.constraint.value}, {violation.reason}, noticed at {noticed_at}"
 
 
-def _breach(stream: Stream, violation: Violation, expected: str, found: str) -> Breach:
-    provider, receiver = stream
+def _breach(stream: ViolatedStream, violation: Violation, expected: str, found: str) -> Breach:
+    provider, receiver, _ = stream
     where = f"violations of '{provider}'"
     if receiver != provider:
         where += f" to '{receiver}'"

@@ -42,6 +42,11 @@ class KnownStreams:
         return [by_time[time] for time in sorted(by_time)]
 
     @property
+    def until(self) -> TimePoint:
+        """The time up to which, inclusive, everything that happened is known."""
+        return self._execution.until
+
+    @property
     def topics(self) -> frozenset[str]:
         """The topics of the recorded streams."""
         return self._topics
@@ -51,8 +56,14 @@ class KnownStreams:
         return self._execution.heartbeats(topic)
 
     def elements(self, topic: str) -> Iterator[Element]:
-        """Yield samples and heartbeats in order of available time; at one time, samples first."""
-        return merge(self[topic], self.heartbeats(topic), key=_available_time)
+        """Yield samples and heartbeats in order of available time; at one time, samples first.
+
+        A heartbeat promises no more than what is kept; the judge has reported it then.
+        """
+        samples, heartbeats = self[topic], self.heartbeats(topic)
+        if not heartbeats:
+            return iter(samples)
+        return merge(samples, _kept_promises(samples, heartbeats), key=_available_time)
 
     def as_recorded(self, topic: str) -> Sequence[Sample[Any]]:
         """Return the samples of a stream as they stand in the recording."""
@@ -62,6 +73,21 @@ class KnownStreams:
                 self._recent.popitem(last=False)
         self._recent.move_to_end(topic)
         return self._recent[topic]
+
+
+def _kept_promises(
+    samples: Sequence[Sample[Any]], heartbeats: Sequence[Heartbeat]
+) -> list[Heartbeat]:
+    kept: list[Heartbeat] = []
+    later = list(samples)
+    earliest: TimePoint | None = None
+    for heartbeat in reversed(heartbeats):
+        while later and later[-1].available_time > heartbeat.available_time:
+            valid_time = later.pop().valid_time
+            earliest = valid_time if earliest is None else min(earliest, valid_time)
+        until = heartbeat.until if earliest is None else min(heartbeat.until, earliest - 1)
+        kept.append(Heartbeat(TimePoint(until), heartbeat.available_time))
+    return kept[::-1]
 
 
 def _available_time(element: Element) -> TimePoint:

@@ -40,12 +40,12 @@ class SmallNetwork:
         processes = {Label(label): DeclaredProcess(Label(label)) for label in self.sources}
         for name, (make, terms) in self.units.items():
             inputs = tuple(
-                DeclaredStream(f"{name}/{number}", Label(provider), policy)
+                DeclaredStream.input(Label(name), number, Label(provider), policy)
                 for number, (provider, policy) in enumerate(terms, start=1)
             )
             processes[Label(name)] = DeclaredProcess(Label(name), inputs, make_unit=make)
         outputs = tuple(
-            DeclaredStream(f"output/{name}", Label(provider), policy)
+            DeclaredStream.output(name, Label(provider), policy)
             for name, (provider, policy) in self.outputs.items()
         )
         return DeclaredNetwork(processes, outputs)
@@ -69,7 +69,7 @@ class SmallNetwork:
             streams[f"output/{name}"] = []
             kernel.subscribe(Label(provider), streams[f"output/{name}"].append, policy)
         kernel.run(until)
-        return Interpretation(until, streams, tuple(self.outputs), violations)
+        return Interpretation(kernel.now, streams, tuple(self.outputs), violations)
 
 
 class _Watched:
