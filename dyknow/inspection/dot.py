@@ -38,7 +38,7 @@ def dot_from(snapshot: Snapshot, title: str = "Network") -> str:
         '  edge [fontname="Helvetica", fontsize=9];',
         f"  label={_quoted(title)};",
         *(f"  {_process(process)};" for process in snapshot.processes),
-        *(f"  {_output(s)};" for s in snapshot.streams if s.is_output),
+        *dict.fromkeys(f"  {_output(s)};" for s in snapshot.streams if s.is_output),
         *(f"  {_edge(stream)};" for stream in snapshot.streams),
         "}",
     ]

@@ -5,7 +5,7 @@ receiver. The picture follows a light or dark page, its texts can be selected, a
 a box or an arrow tells all that is known of it.
 """
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Container, Iterable, Sequence
 from html import escape
 from typing import Final
 
@@ -134,11 +134,7 @@ class _Picture:
         self._snapshot = snapshot
         self._total = snapshot.seconds or 1.0
         layer = {process.label: process.depth for process in snapshot.processes}
-        self._streams = [
-            s
-            for s in snapshot.streams
-            if s.provider in layer and (s.is_output or s.receiver in layer)
-        ]
+        self._streams = [s for s in _distinct(snapshot.streams) if _is_shown(s, layer)]
         _push_right(layer, [s for s in self._streams if not s.is_output])
         self._outputs = {_node_of(s): s for s in self._streams if s.is_output}
         heads = [_node_of(stream) for stream in self._streams]
@@ -148,7 +144,7 @@ class _Picture:
         ]
         for name, stream in self._outputs.items():
             boxes.append(_output_box(name, stream, layer[stream.provider] + 1))
-        arrows = [Arrow(s.provider, _node_of(s), s.number) for s in self._streams]
+        arrows = [Arrow(s.provider, _node_of(s), at) for at, s in enumerate(self._streams)]
         self._box = {box.name: box for box in boxes}
         self.layout: Layout = lay_out(boxes, arrows, gap=_GAP, spacing=_SPACING)
 
@@ -207,6 +203,16 @@ class _Picture:
         text = _short(stream.receiver)
         yield _text("label", x + box.width / 2, y + box.height / 2 + 4, text, "middle")
         yield "</g>"
+
+
+def _distinct(streams: Iterable[StreamFigures]) -> Iterable[StreamFigures]:
+    """Return one of all streams with the same ends and policy: who looks twice sees the same."""
+    found = {(s.provider, s.receiver, s.number, s.is_output, s.policy): s for s in streams}
+    return found.values()
+
+
+def _is_shown(stream: StreamFigures, labels: Container[str]) -> bool:
+    return stream.provider in labels and (stream.is_output or stream.receiver in labels)
 
 
 def _push_right(layer: dict[str, int], streams: Sequence[StreamFigures]) -> None:

@@ -7,6 +7,8 @@ Processing Middleware Framework*, section 1.3: "introspection" is one of the six
 A snapshot can be written to a file and read again, and two of them have a difference.
 """
 
+from collections import Counter
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, replace
 from enum import StrEnum
 from typing import Final
@@ -159,7 +161,7 @@ class Snapshot:
         if earlier.now > self.now:
             raise ValueError(f"the earlier snapshot is of {earlier.now}, this one of {self.now}")
         process_before = {process.label: process for process in earlier.processes}
-        stream_before = {(s.provider, s.receiver, s.number): s for s in earlier.streams}
+        stream_before = dict(_keyed(earlier.streams))
         elapsed = (self.now - earlier.now) / SECOND
         return replace(
             self,
@@ -169,8 +171,8 @@ class Snapshot:
                 for process in self.processes
             ),
             streams=tuple(
-                _stream_since(s, stream_before.get((s.provider, s.receiver, s.number)), elapsed)
-                for s in self.streams
+                _stream_since(stream, stream_before.get(key), elapsed)
+                for key, stream in _keyed(self.streams)
             ),
         )
 
@@ -218,6 +220,17 @@ class _Document:
 
 _HEADER: Final = TypeAdapter(_Header)
 _DOCUMENT: Final = TypeAdapter(_Document)
+
+
+def _keyed(
+    streams: Iterable[StreamFigures],
+) -> Iterator[tuple[tuple[str, str, int, int], StreamFigures]]:
+    """Yield streams with what tells them apart; several may have the same two ends."""
+    seen: Counter[tuple[str, str, int]] = Counter()
+    for stream in streams:
+        ends = (stream.provider, stream.receiver, stream.number)
+        seen[ends] += 1
+        yield (*ends, seen[ends]), stream
 
 
 def _process_since(process: ProcessFigures, before: ProcessFigures | None) -> ProcessFigures:
