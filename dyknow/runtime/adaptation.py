@@ -15,12 +15,12 @@ from dyknow.runtime.agenda import Agenda, Ticket
 from dyknow.runtime.cache import NEVER
 from dyknow.runtime.generators import Beat, Receive, StreamGenerator
 from dyknow.runtime.statistics import Tally
-from dyknow.streams.adapter import Adapter, adapter_for
+from dyknow.streams.adapter import Adapter, VariesPeriod, adapter_for
 from dyknow.streams.ordering import Filter
 from dyknow.streams.policy import Approximation, Policy, Violation
 from dyknow.streams.process import Element
 from dyknow.streams.sample import Heartbeat, Sample
-from dyknow.time import TimePoint, text_from_duration
+from dyknow.time import Duration, TimePoint, text_from_duration
 
 __all__ = ["END_OF_TIME", "AdaptedStream", "Member", "PlainStream"]
 
@@ -59,6 +59,10 @@ class PlainStream:
     def last(self) -> Sample[Any] | None:
         """The last sample that was handed on."""
         return self._generator.last
+
+    @property
+    def period(self) -> None:
+        """The sample period in force: there is none."""
 
     @property
     def is_empty(self) -> bool:
@@ -116,6 +120,17 @@ class AdaptedStream:
             and sample.available_time >= self.begin
             and self.policy.allows_delay(sample.delay)
         )
+
+    @property
+    def period(self) -> Duration | None:
+        """The sample period in force, if the stream is sampled."""
+        return self._adapter.period if isinstance(self._adapter, VariesPeriod) else None
+
+    def set_period(self, period: Duration, begin: TimePoint) -> None:
+        """Go on with another of the sample periods that the policy allows, from *begin* on."""
+        assert isinstance(self._adapter, VariesPeriod)  # whoever asks has looked at the policy
+        self._hand_on(self._adapter.set_period(period, begin), TimePoint(begin - 1))
+        self._plan()
 
     @property
     def is_empty(self) -> bool:

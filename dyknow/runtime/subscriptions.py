@@ -10,8 +10,9 @@ from dyknow.runtime.agenda import Agenda
 from dyknow.runtime.changes import Changes
 from dyknow.runtime.generators import ANYTHING, Beat, Label, Receive, StreamGenerator
 from dyknow.runtime.statistics import Statistics, Tally
-from dyknow.streams.policy import Policy, Violation
+from dyknow.streams.policy import Policy, SampleEvery, Violation
 from dyknow.streams.refusal import refusal
+from dyknow.time import Duration, text_from_duration
 
 __all__ = ["Receiver", "StreamProxy", "StreamViolation", "Subscriptions", "ViolationReceiver"]
 
@@ -127,6 +128,22 @@ class StreamProxy:
         tally = self._tally if self.stream is None else self.stream.tally
         return Statistics() if tally is None else tally.statistics
 
+    @property
+    def period(self) -> Duration | None:
+        """The sample period in force, if the stream is sampled and has begun."""
+        return None if self.stream is None else self.stream.period
+
+    def set_period(self, period: Duration) -> None:
+        """Go on with another of the sample periods that the policy allows under load.
+
+        During an instant, the change is made when the work of that instant is done. Receivers
+        that share the stream, having the same policy, share the change.
+
+        Raises:
+            ValueError: The policy does not allow the period, or the stream has ended.
+        """
+        self._subscriptions.set_period(self, period)
+
     def replace_policy(self, policy: Policy) -> None:
         """Receive the same stream under another policy, from the next time-point on.
 
@@ -218,6 +235,15 @@ class Subscriptions:
         self.check(proxy.generator, policy)
         self._changes.make(lambda: self._replace(proxy, policy))
 
+    def set_period(self, proxy: StreamProxy, period: Duration) -> None:
+        """Let a sampled stream go on with another period."""
+        if proxy.has_ended:
+            raise ValueError(f"{proxy} has ended")
+        change = proxy.policy.change
+        if not isinstance(change, SampleEvery) or period not in change.periods():
+            raise ValueError(f"{proxy} may not be sampled every {text_from_duration(period)}")
+        self._changes.make(lambda: self._set_period(proxy, period))
+
     def end(self, proxy: StreamProxy) -> None:
         """Hand a receiver nothing more."""
         if not proxy.has_ended:
@@ -239,6 +265,10 @@ class Subscriptions:
             stream = self._new_stream(proxy.generator, policy, proxy.stream)
             proxy.policy = policy
             self._attach(proxy, stream)
+
+    def _set_period(self, proxy: StreamProxy, period: Duration) -> None:
+        if isinstance(proxy.stream, AdaptedStream) and proxy.period != period:
+            proxy.stream.set_period(period, self._changes.begin)
 
     def _attach(self, proxy: StreamProxy, stream: Stream | None) -> None:
         old = proxy.stream
