@@ -6,6 +6,7 @@ Read in this order: `running` (one run from begin to end), `request` (what a use
 `truth` and `scoring` (what really happened, and how well that was recognised), `results` (as a
 value and a folder), `totals` (of several runs), `origin` (what a run was made from), `recording`
 (every stream of a run in a file), `replaying` (the same from that file again), `maps` (what a map
-says, in short), `overlaying` (a film of what is believed), `checking` (faults of files), `bundled`
+says, in short), `overlaying` (a film of what is believed), `checking` (faults of files),
+`inspecting` (what the network of a run looked like), `benchmarks` (how fast it all is), `bundled`
 (where data lie), `errors`; `commands` is what a user types.
 """

@@ -9,7 +9,7 @@ from types import FrameType
 
 import typer
 
-from traffic.commands import check, network, report, run, scenarios
+from traffic.commands import benchmark, check, inspect, network, report, run, scenarios
 from traffic.commands.complaining import complaint_about
 
 __all__ = ["app", "main"]
@@ -23,9 +23,11 @@ app = typer.Typer(
 )
 app.command("run")(run.run)
 app.command("report")(report.report)
+app.command("inspect")(inspect.inspect)
 app.command("check")(check.check)
 app.add_typer(network.app, name="network")
 app.command("scenarios")(scenarios.scenarios)
+app.command("benchmark")(benchmark.benchmark)
 
 _STOPS = {signal.SIGINT: "interrupted", signal.SIGTERM: "terminated"}
 

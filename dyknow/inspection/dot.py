@@ -4,11 +4,11 @@ from collections.abc import Iterable
 
 from dyknow.inspection.snapshot import Kind, ProcessFigures, Snapshot, StreamFigures
 from dyknow.inspection.wording import (
+    amount_text,
     count_text,
-    delay_text,
     implementation_text,
     process_text,
-    rate_text,
+    pulse_text,
     stream_text,
 )
 
@@ -49,7 +49,7 @@ def _process(process: ProcessFigures) -> str:
     facts = (
         process.label,
         implementation_text(process),
-        f"{count_text(process.samples)} samples, {process.seconds:.3g} s",
+        f"{amount_text(process.samples, 'sample')}, {process.seconds:.3g} s",
     )
     colour = _BAD if process.failures else _COLOURS.get(process.kind, _OTHER)
     return _statement(
@@ -67,7 +67,7 @@ def _output(stream: StreamFigures) -> str:
 
 
 def _edge(stream: StreamFigures) -> str:
-    facts = [f"{rate_text(stream.rate)}, {delay_text(stream.mean_delay)}"]
+    facts = [pulse_text(stream)]
     attributes = {"tooltip": _quoted(stream_text(stream))}
     if stream.violations:
         facts.append(f"{count_text(stream.violations)} violated")

@@ -12,11 +12,11 @@ from typing import Final
 from dyknow.inspection.layout import Arrow, Box, Layout, lay_out
 from dyknow.inspection.snapshot import Kind, ProcessFigures, Snapshot, StreamFigures
 from dyknow.inspection.wording import (
+    amount_text,
     count_text,
-    delay_text,
     implementation_text,
     process_text,
-    rate_text,
+    pulse_text,
     stream_text,
 )
 from dyknow.time import SECOND
@@ -171,7 +171,7 @@ class _Picture:
 
     def _facts(self, process: ProcessFigures) -> tuple[str, str]:
         share = process.seconds / self._total
-        work = f"{count_text(process.samples)} samples · {share:.0%} CPU"
+        work = f"{amount_text(process.samples, 'sample')} · {share:.0%} CPU"
         return implementation_text(process), work
 
     def _process(self, process: ProcessFigures) -> Iterable[str]:
@@ -248,7 +248,7 @@ def _header(snapshot: Snapshot, title: str) -> Iterable[str]:
     )
     yield _text("title", _MARGIN, _MARGIN + 14, title)
     x, y = _MARGIN, _MARGIN + 32
-    complaint = f' <tspan class="bad">· {count_text(violations)} violations</tspan>'
+    complaint = f' <tspan class="bad">· {amount_text(violations, "violation")}</tspan>'
     told = complaint if violations else ""
     yield f'<text class="small" x="{x:.1f}" y="{y:.1f}">{escape(facts)}{told}</text>'
     present = {_CLASS_BY_KIND.get(process.kind, "other") for process in snapshot.processes}
@@ -289,8 +289,7 @@ def _curve(route: tuple[tuple[float, float], ...]) -> str:
 
 
 def _figures(stream: StreamFigures, x: float, y: float) -> Iterable[str]:
-    figures = f"{rate_text(stream.rate)} · {delay_text(stream.mean_delay)}"
-    yield _text("figure halo", x - 12, y - 5, figures, "end")
+    yield _text("figure halo", x - 12, y - 5, pulse_text(stream), "end")
     if stream.violations:
         complaint = f"{count_text(stream.violations)} violated"
         yield _text("figure bad halo", x - 12, y + 13, complaint, "end")

@@ -4,10 +4,12 @@ from dyknow.inspection.snapshot import ProcessFigures, StreamFigures
 from dyknow.time import MILLISECOND, SECOND
 
 __all__ = [
+    "amount_text",
     "count_text",
     "delay_text",
     "implementation_text",
     "process_text",
+    "pulse_text",
     "rate_text",
     "stream_text",
 ]
@@ -31,6 +33,11 @@ def count_text(count: int) -> str:
     return f"{_digits(amount)}\u202f{unit}"
 
 
+def amount_text(count: int, what: str) -> str:
+    """Write how many there are of something: `1 sample`, `501 samples`."""
+    return f"{count_text(count)} {what}" if count == 1 else f"{count_text(count)} {what}s"
+
+
 def rate_text(rate: float | None) -> str:
     """Write a rate: `10 Hz`, `0.5 Hz`; a dash for none."""
     if rate is None:
@@ -51,6 +58,13 @@ def delay_text(delay: float | None) -> str:
     return f"{_digits(delay)}\u202fns"
 
 
+def pulse_text(stream: StreamFigures) -> str:
+    """Write rate and mean delay of a stream, `10 Hz · 500 ms`, or how few samples it has had."""
+    if stream.rate is None:
+        return amount_text(stream.samples, "sample") if stream.samples else "nothing yet"
+    return f"{rate_text(stream.rate)} · {delay_text(stream.mean_delay)}"
+
+
 def implementation_text(process: ProcessFigures) -> str:
     """Write what a process is made of in a few words: `VisionPercepts`, or else its kind."""
     name = process.text.partition("(")[0].strip()
@@ -65,17 +79,17 @@ def process_text(process: ProcessFigures) -> str:
     if process.policy:
         lines.append(f"promises {process.policy}")
     lines.append(
-        f"{count_text(process.samples)} samples from {count_text(process.calls)} calls, "
+        f"{amount_text(process.samples, 'sample')} from {amount_text(process.calls, 'call')}, "
         f"{process.seconds:.3g} s of processor time"
     )
     if process.heartbeats:
-        lines.append(f"{count_text(process.heartbeats)} heartbeats")
+        lines.append(amount_text(process.heartbeats, "heartbeat"))
     if process.cache_limit is not None:
         lines.append(f"cache: {process.cached} of at most {process.cache_limit} samples")
     if process.violations:
-        lines.append(f"{count_text(process.violations)} violations in its input")
+        lines.append(f"{amount_text(process.violations, 'violation')} in its input")
     if process.failures:
-        lines.append(f"{count_text(process.failures)} failures")
+        lines.append(amount_text(process.failures, "failure"))
     return "\n".join(lines)
 
 
@@ -84,13 +98,13 @@ def stream_text(stream: StreamFigures) -> str:
     policy = f" with {stream.policy}" if stream.policy else ""
     lines = [
         f"{stream.provider}{policy} → {stream.name}",
-        f"{count_text(stream.samples)} samples, {rate_text(stream.rate)}",
+        f"{amount_text(stream.samples, 'sample')}, {rate_text(stream.rate)}",
         f"delay: mean {delay_text(stream.mean_delay)}, 99 % {delay_text(stream.delay_99)}",
     ]
     if stream.violations:
-        lines.append(f"{count_text(stream.violations)} violations")
+        lines.append(amount_text(stream.violations, "violation"))
     if stream.late:
-        lines.append(f"{count_text(stream.late)} late samples")
+        lines.append(amount_text(stream.late, "late sample"))
     return "\n".join(lines)
 
 

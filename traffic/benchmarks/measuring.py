@@ -100,9 +100,8 @@ def line_through(points: Sequence[Point]) -> Line:
 
 @contextmanager
 def undisturbed() -> Iterator[None]:
-    """Let no garbage be collected while the block lasts, after it has been collected once."""
+    """Let no garbage be collected while the block lasts."""
     was_enabled = gc.isenabled()
-    gc.collect()
     gc.disable()
     try:
         yield

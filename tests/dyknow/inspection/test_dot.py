@@ -97,7 +97,7 @@ def test_edges_carry_the_figures():
     """Rate, delay and violations stand on the edges."""
     text = dot_from(small_network())
 
-    assert 'label="10\u202fHz, 40\u202fms\\n2 violated"' in text
+    assert 'label="10\u202fHz · 40\u202fms\\n2 violated"' in text
     assert '"percepts[vision]" -> "cars"' in text
 
 

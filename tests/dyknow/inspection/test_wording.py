@@ -5,10 +5,12 @@ from dataclasses import replace
 import pytest
 
 from dyknow.inspection.wording import (
+    amount_text,
     count_text,
     delay_text,
     implementation_text,
     process_text,
+    pulse_text,
     rate_text,
     stream_text,
 )
@@ -61,7 +63,7 @@ def test_processes_tell_everything():
     for piece in ("Vision(images)", "promises strict order", "3 heartbeats", "4 violations"):
         assert piece in told
     assert "cache: 8 of at most 16 samples" in told
-    assert "1 failures" in told
+    assert "1 failure" in told
     assert implementation_text(process) == "Vision"
 
 
@@ -71,4 +73,19 @@ def test_streams_tell_everything():
 
     assert told.startswith("percepts[vision] with sample every 100 → cars/1\n")
     assert "99 % 80\u202fms" in told
-    assert "1 late samples" in told
+    assert "1 late sample" in told
+
+
+def test_one_of_something_is_not_many():
+    """Nouns follow their number."""
+    assert amount_text(1, "sample") == "1 sample"
+    assert amount_text(0, "sample") == "0 samples"
+
+
+def test_a_pulse_needs_two_samples():
+    """With fewer than two samples there is no rate, and the pulse says how many there are."""
+    stream = small_network().streams[1]
+
+    assert pulse_text(stream) == "10\u202fHz · 40\u202fms"
+    assert pulse_text(replace(stream, rate=None, samples=1)) == "1 sample"
+    assert pulse_text(replace(stream, rate=None, samples=0)) == "nothing yet"
