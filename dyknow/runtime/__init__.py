@@ -6,7 +6,7 @@ Read in this order:
 - `cache`: the last samples of a stream and the questions that can be asked of them
 - `agenda`: what is to happen when; `changes`: when the network may be changed
 - `generators`: where the samples of a process come out
-- `adaptation`: a stream on its way, adapted to a policy
+- `beginnings`: how a stream begins; `adaptation`: a stream on its way, adapted to a policy
 - `subscriptions`: who receives which stream under which policy
 - `failures`: what happens when a process fails; `processes`: sources and units at work
 - `clock`: how fast a run goes

@@ -80,6 +80,13 @@ class Agenda:
             self._n_void += 1
             self._tidy()
 
+    def move(self, ticket: Ticket, priority: int) -> None:
+        """Give the participant another priority."""
+        ticket.priority = priority
+        if ticket.wake_at is not None:
+            heappush(self._entries, (ticket.wake_at, priority, ticket.number))
+            self._n_void += 1
+
     def wake(self, ticket: Ticket, time: TimePoint) -> None:
         """Plan a turn at *time*, or leave an earlier one that is planned already."""
         planned = ticket.wake_at
@@ -100,10 +107,8 @@ class Agenda:
         """Return the time of the next turn, if there is one."""
         entries = self._entries
         while entries:
-            time, _, number = entries[0]
-            ticket = self._tickets.get(number)
-            if ticket is not None and ticket.wake_at == time:
-                return time
+            if self._is_planned(entries[0]):
+                return entries[0][0]
             heappop(entries)
         self._n_void = 0
         return None
@@ -113,9 +118,9 @@ class Agenda:
         entries = self._entries
         tickets = self._tickets
         while entries and entries[0][0] == now:
-            _, _, number = heappop(entries)
+            _, priority, number = heappop(entries)
             ticket = tickets.get(number)
-            if ticket is not None and ticket.wake_at == now:
+            if ticket is not None and ticket.wake_at == now and ticket.priority == priority:
                 ticket.wake_at = None
                 ticket.participant.turn(now)
 
@@ -126,5 +131,6 @@ class Agenda:
             self._n_void = 0
 
     def _is_planned(self, entry: tuple[TimePoint, int, int]) -> bool:
-        ticket = self._tickets.get(entry[2])
-        return ticket is not None and ticket.wake_at == entry[0]
+        time, priority, number = entry
+        ticket = self._tickets.get(number)
+        return ticket is not None and ticket.wake_at == time and ticket.priority == priority

@@ -30,15 +30,16 @@ class CachedStream:
 
     Attributes:
         label: The name of the generator whose samples these are.
+        lost_until: The highest valid time of the samples that are not held any more.
     """
 
-    __slots__ = ("_cache", "_lost", "label")
+    __slots__ = ("_cache", "label", "lost_until")
 
     def __init__(self, label: Label, capacity: int = CACHE_SIZE) -> None:
         """Hold up to *capacity* samples."""
         self.label = label
         self._cache: deque[Sample[Any]] = deque(maxlen=_checked(capacity))
-        self._lost = NEVER
+        self.lost_until = NEVER
 
     @property
     def size(self) -> int:
@@ -126,10 +127,6 @@ class CachedStream:
         while self._cache:
             self._lose(self._cache.popleft())
 
-    def holds_all_since(self, time: TimePoint) -> bool:
-        """Return whether every sample so far with a valid time from *time* on is held."""
-        return self._lost < time
-
     def _hold(self, sample: Sample[Any]) -> None:
         cache = self._cache
         if len(cache) == cache.maxlen:
@@ -137,7 +134,7 @@ class CachedStream:
         cache.append(sample)
 
     def _lose(self, sample: Sample[Any]) -> None:
-        self._lost = max(self._lost, sample.valid_time)
+        self.lost_until = max(self.lost_until, sample.valid_time)
 
 
 def _checked(capacity: int) -> int:

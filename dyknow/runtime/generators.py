@@ -38,8 +38,8 @@ class StreamGenerator(CachedStream):
         output_policy: What its process promises about all that it produces.
         account: What its process has cost and given.
         tally: The figures of the stream of all samples that have become available.
-        complete_until: The valid time up to which its process has promised no more samples;
-            `NEVER` without a promise.
+        complete_until: The valid time up to which its last heartbeat that became available
+            promises no more samples; `NEVER` without one.
         last: The last sample that has become available.
     """
 
@@ -47,6 +47,7 @@ class StreamGenerator(CachedStream):
         "_agenda",
         "_beats",
         "_last_time",
+        "_promised",
         "_receivers",
         "_waiting",
         "account",
@@ -74,6 +75,7 @@ class StreamGenerator(CachedStream):
         self._agenda = agenda
         self._last_time = TimePoint(-1)
         self.complete_until = NEVER
+        self._promised = NEVER
         self._receivers: dict[object, Receive] = {}
         self._beats: dict[object, Beat] = {}
         self._waiting: deque[Element] = deque()
@@ -115,8 +117,8 @@ class StreamGenerator(CachedStream):
     def check(self, element: Element) -> None:
         """Raise an error if the process may not produce this now."""
         if element.__class__ is Sample:
-            if element.valid_time <= self.complete_until:
-                until = text_from_duration(self.complete_until)
+            if element.valid_time <= self._promised:
+                until = text_from_duration(self._promised)
                 valid_time = text_from_duration(element.valid_time)
                 raise ValueError(
                     f"a sample valid at {valid_time} after the promise of none up to {until}"
@@ -157,7 +159,7 @@ class StreamGenerator(CachedStream):
         self._waiting.clear()
 
     def _put_heartbeat(self, heartbeat: Heartbeat, now: TimePoint) -> None:
-        self.complete_until = max(self.complete_until, heartbeat.until)
+        self._promised = max(self._promised, heartbeat.until)
         earliest = max(now, self._last_time)
         if heartbeat.available_time < earliest:
             heartbeat = Heartbeat(heartbeat.until, earliest)
@@ -180,5 +182,6 @@ class StreamGenerator(CachedStream):
 
     def _beat(self, heartbeat: Heartbeat) -> None:
         self.tally.heartbeats += 1
+        self.complete_until = max(self.complete_until, heartbeat.until)
         for beat in self._beats.values():
             beat(heartbeat)

@@ -149,6 +149,36 @@ class Kernel:
             )
             self._subscriptions.open(provider, receiver, policy)
 
+    def add_input(self, label: Label, provider: Label, policy: Policy = ANYTHING) -> StreamProxy:
+        """Let the unit of *label* take one more stream, which may end before the unit does.
+
+        The stream has the first place that is free behind the inputs that the unit has.
+
+        Raises:
+            NoSuchLabelError: There is no generator of one of the names.
+            PolicyNotSupportedError: The policy cannot be kept.
+            TypeError: The process is a source.
+            ValueError: The process feeds the provider itself.
+        """
+        generator = self.generator(provider)
+        self._subscriptions.check(generator, policy)
+        running = self._processes[self.generator(label).label]
+        if not isinstance(running, RunningUnit):
+            raise TypeError(f"'{label}' is a source and takes no streams")
+        if self._feeds(label, provider):
+            raise ValueError(f"'{provider}' depends on '{label}', which cannot take its stream")
+        at = running.add_input(provider)
+        account = running.account
+        receiver = Receiver(label, at + 1, running.receiver(at), running.beat(at), account)
+        return self._subscriptions.open(generator, receiver, policy)
+
+    def remove_input(self, stream: StreamProxy) -> None:
+        """Let a unit no longer take a stream that was added as an input."""
+        running = self._processes[stream.receiver]
+        assert isinstance(running, RunningUnit)  # nothing else has inputs
+        self._subscriptions.end(stream)
+        self._changes.make(lambda: running.remove_input(stream.number - 1))
+
     def remove(self, label: Label) -> None:
         """Remove a process with its stream generator and its input streams.
 
@@ -268,6 +298,18 @@ class Kernel:
             self._agenda.hold_instant(instant)
         finally:
             self._changes.leave()
+
+    def _feeds(self, label: Label, other: Label) -> bool:
+        """Return whether samples of *label* can lead to samples of *other*."""
+        seen, ahead = {other}, [other]
+        while ahead:
+            found = ahead.pop()
+            if found == label:
+                return True
+            new = {provider for provider, _ in self._processes[found].inputs} - seen
+            seen |= new
+            ahead.extend(new)
+        return False
 
     def _new_generator(self, label: Label, depth: int, output_policy: Policy) -> StreamGenerator:
         if label in self._processes:

@@ -7,14 +7,13 @@ from typing import Any
 
 from dyknow.errors import ProcessError
 from dyknow.runtime.accounts import Account
-from dyknow.runtime.adaptation import END_OF_TIME
 from dyknow.runtime.agenda import Agenda
 from dyknow.runtime.failures import Failure, OnFailure
 from dyknow.runtime.generators import Beat, Label, Receive, StreamGenerator
 from dyknow.streams.adapter import ReportsViolations
 from dyknow.streams.policy import Policy, Violation
 from dyknow.streams.process import ComputationalUnit, Element, HearsHeartbeats, Source
-from dyknow.streams.sample import NO_SAMPLE, Heartbeat, Sample
+from dyknow.streams.sample import END_OF_TIME, NO_SAMPLE, Heartbeat, Sample
 from dyknow.time import TimePoint, text_from_duration
 
 __all__ = ["Kind", "RunningProcess", "RunningSource", "RunningUnit", "Surroundings"]
@@ -239,7 +238,7 @@ class RunningUnit(RunningProcess):
     ) -> None:
         super().__init__(unit, generator, on_failure, surroundings)
         self._unit = unit
-        self._providers = tuple(providers)
+        self._providers: list[Label | None] = list(providers)
         self._inputs: list[Sample[Any]] = [NO_SAMPLE] * len(providers)
         self._has_news = False
         self._heartbeats: dict[int, Heartbeat] = {}
@@ -251,7 +250,23 @@ class RunningUnit(RunningProcess):
     @property
     def inputs(self) -> Sequence[tuple[Label, Sample[Any]]]:
         """The label and the last sample of each input stream."""
-        return tuple(zip(self._providers, self._inputs, strict=True))
+        both = zip(self._providers, self._inputs, strict=True)
+        return tuple((label, sample) for label, sample in both if label is not None)
+
+    def add_input(self, provider: Label) -> int:
+        """Take one more stream, at the first place that is free; return its number from 0 on."""
+        if None not in self._providers:
+            self._providers.append(None)
+            self._inputs.append(NO_SAMPLE)
+        at = self._providers.index(None)
+        self._providers[at] = provider
+        return at
+
+    def remove_input(self, at: int) -> None:
+        """Take stream number *at*, from 0 on, no more; its place is free from now on."""
+        self._providers[at] = None
+        self._inputs[at] = NO_SAMPLE
+        self._heartbeats.pop(at, None)
 
     def start(self, now: TimePoint) -> None:
         """Plan the first alarm of a unit that has one before its first input."""

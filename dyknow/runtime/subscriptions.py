@@ -1,12 +1,14 @@
 """Who receives which stream under which policy, and how that is changed."""
 
-from collections.abc import Callable, Hashable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from typing import TypeVar
 
 from dyknow.errors import PolicyNotSupportedError
 from dyknow.runtime.accounts import Account
-from dyknow.runtime.adaptation import AdaptedStream, PlainStream
+from dyknow.runtime.adaptation import AdaptedStream, PlainStream, Stream
 from dyknow.runtime.agenda import Agenda
+from dyknow.runtime.beginnings import Beginning, beginning, continuation
 from dyknow.runtime.changes import Changes
 from dyknow.runtime.generators import ANYTHING, Beat, Label, Receive, StreamGenerator
 from dyknow.runtime.statistics import Statistics, Tally
@@ -15,6 +17,8 @@ from dyknow.streams.refusal import refusal
 from dyknow.time import Duration, text_from_duration
 
 __all__ = ["Receiver", "StreamProxy", "StreamViolation", "Subscriptions", "ViolationReceiver"]
+
+T = TypeVar("T")
 
 
 @dataclass(frozen=True, slots=True)
@@ -37,8 +41,8 @@ class StreamViolation:
     number: int = 0
 
 
-Stream = AdaptedStream | PlainStream
-"""What a receiver can be attached to."""
+Tap = tuple[Receive, Beat]
+"""Takes what a stream says on its way to a receiver."""
 
 ViolationReceiver = Callable[[StreamViolation], None]
 """Takes the violations of a stream, or of a whole network."""
@@ -80,8 +84,10 @@ class StreamProxy:
 
     __slots__ = (
         "_account",
+        "_own",
         "_subscriptions",
         "_tally",
+        "_taps",
         "_violation_receivers",
         "beat",
         "generator",
@@ -108,6 +114,8 @@ class StreamProxy:
         self.policy = policy
         self.stream: Stream | None = None
         self.has_ended = False
+        self._own = receiver
+        self._taps: list[Tap] = []
         self._account = receiver.account
         self._subscriptions = subscriptions
         self._tally: Tally | None = None
@@ -136,8 +144,8 @@ class StreamProxy:
     def set_period(self, period: Duration) -> None:
         """Go on with another of the sample periods that the policy allows under load.
 
-        During an instant, the change is made when the work of that instant is done. Receivers
-        that share the stream, having the same policy, share the change.
+        During an instant, the change is made when the work of that instant is done. Other
+        receivers of the same generator go on as they are.
 
         Raises:
             ValueError: The policy does not allow the period, or the stream has ended.
@@ -167,6 +175,21 @@ class StreamProxy:
             raise ValueError(f"{self} is an input and ends with its process")
         self._subscriptions.end(self)
 
+    def tap(self, receive: Receive, beat: Beat) -> Callable[[], None]:
+        """Show each sample and each heartbeat to others too, before the receiver has it.
+
+        That goes on under a policy that replaces the present one. Return what ends it.
+        """
+        tap = (receive, beat)
+        self._taps.append(tap)
+        self._rejoin()
+
+        def end() -> None:
+            self._taps.remove(tap)
+            self._rejoin()
+
+        return end
+
     def subscribe_violations(self, receive: ViolationReceiver) -> Callable[[], None]:
         """Hand every violation of the policy to *receive*; return what ends that."""
         self._violation_receivers.append(receive)
@@ -190,6 +213,32 @@ class StreamProxy:
         if stream is not None:
             stream.join(self)
 
+    def _rejoin(self) -> None:
+        """Receive with the taps that there are now."""
+        own = self._own
+        receivers = [*(receive for receive, _ in self._taps), own.receive]
+        beats = [*(beat for _, beat in self._taps), *([own.beat] if own.beat else [])]
+        self.receive = _to_all(receivers)
+        self.beat = _to_all(beats)
+        if self.stream is not None:
+            self.stream.join(self)
+
+
+def _to_all(receivers: Sequence[Callable[[T], None]]) -> Callable[[T], None]:
+    """Return what calls each of *receivers*, in their order."""
+    if len(receivers) == 1:
+        return receivers[0]
+
+    def call(said: T) -> None:
+        for receive in receivers:
+            receive(said)
+
+    return call
+
+
+StreamKey = tuple[StreamGenerator, Policy, *tuple[object, ...]]
+"""What two streams must have in common to be made once, beside the moment of their beginning."""
+
 
 class Subscriptions:
     """All streams of a network."""
@@ -200,7 +249,7 @@ class Subscriptions:
         self._changes = changes
         self._proxies: dict[StreamProxy, None] = {}
         self._epoch = changes.epoch
-        self._shared: dict[Hashable, AdaptedStream] = {}
+        self._shared: dict[StreamKey, AdaptedStream] = {}
 
     @property
     def proxies(self) -> tuple[StreamProxy, ...]:
@@ -267,13 +316,23 @@ class Subscriptions:
             self._attach(proxy, stream)
 
     def _set_period(self, proxy: StreamProxy, period: Duration) -> None:
-        if isinstance(proxy.stream, AdaptedStream) and proxy.period != period:
-            proxy.stream.set_period(period, self._changes.begin)
+        stream = proxy.stream
+        if not isinstance(stream, AdaptedStream) or stream.period == period:
+            return
+        key = (proxy.generator, proxy.policy, stream, period)
+        split = self._found(key)
+        if split is None and stream.n_members == 1:
+            stream.set_period(period, self._changes.begin)
+            return
+        if split is None:
+            split = self._made(key, stream.copied(self._changes.begin))
+            split.set_period(period, self._changes.begin)
+        self._attach(proxy, split)
 
     def _attach(self, proxy: StreamProxy, stream: Stream | None) -> None:
         old = proxy.stream
         proxy.attach(stream)
-        if old is not None and old.is_empty:
+        if old is not None and not old.n_members:
             self._shared.clear()
 
     def _new_stream(
@@ -281,15 +340,23 @@ class Subscriptions:
     ) -> AdaptedStream:
         """Return a stream that begins now, which may have been made for another receiver."""
         key = (generator, policy, predecessor)
+        found = self._found(key)
+        if found is not None:
+            return found
+        begin = self._changes.begin
+        if predecessor is None:
+            return self._made(key, beginning(generator, policy, begin))
+        return self._made(key, continuation(generator, policy, begin, predecessor))
+
+    def _found(self, key: StreamKey) -> AdaptedStream | None:
+        """Return a stream that was made alike while nothing has happened since."""
         if self._epoch != self._changes.epoch:
             self._epoch = self._changes.epoch
             self._shared.clear()
-        stream = self._shared.get(key)
-        if stream is None:
-            stream = AdaptedStream(generator, policy, self._agenda, self._changes.begin)
-            if predecessor is None:
-                stream.begin_in_the_past()
-            else:
-                stream.carry_on(predecessor)
-            self._shared[key] = stream
+        return self._shared.get(key)
+
+    def _made(self, key: StreamKey, beginning: Beginning) -> AdaptedStream:
+        generator, policy = key[:2]
+        stream = AdaptedStream(generator, policy, self._agenda, beginning)
+        self._shared[key] = stream
         return stream

@@ -8,7 +8,7 @@ sample that is missing under `sample every`. What the policy does not ask for (v
 the duration, repetitions under `any change`, samples off the grid) is left out without a word.
 """
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from typing import Any, Protocol, runtime_checkable
 
 from dyknow.streams.ordering import Filter
@@ -37,6 +37,14 @@ class Adapter(ReportsViolations, Protocol):
     Samples are pushed in order of available time. At one instant, `push` comes before
     `advance`: a sample that arrives at a deadline has met it.
     """
+
+    @property
+    def violations(self) -> list[Violation]:
+        """What has been noticed and not yet been taken: the same list at all times."""
+
+    @property
+    def held(self) -> Sequence[Sample[Any]]:
+        """The samples that are kept back and may be handed on later."""
 
     def push(self, sample: Sample[Any]) -> Iterable[Sample[Any]]:
         """Take in a sample at its available time and yield what can be handed on."""

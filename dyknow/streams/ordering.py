@@ -10,12 +10,13 @@ from dyknow.streams.sample import Heartbeat, Sample
 from dyknow.streams.values import are_equal
 from dyknow.time import TimePoint, text_from_duration
 
-__all__ = ["NEVER", "Filter", "delay_violation"]
+__all__ = ["LEAST_STEP", "NEVER", "Filter", "delay_violation"]
 
 NEVER = 1 << 63
 """Later than every time-point, longer than every duration."""
 
-_LEAST_STEP = {Order.ANY: -NEVER, Order.MONOTONE: 0, Order.STRICT: 1}
+LEAST_STEP = {Order.ANY: -NEVER, Order.MONOTONE: 0, Order.STRICT: 1}
+"""By how much valid times must grow from one sample to the next."""
 
 
 class Filter:
@@ -25,7 +26,7 @@ class Filter:
     no sample that was left out could be put back.
 
     Attributes:
-        violations: What has been noticed and not yet been taken.
+        violations: What has been noticed and not yet been taken: the same list at all times.
     """
 
     def __init__(self, policy: Policy) -> None:
@@ -34,9 +35,14 @@ class Filter:
         self._start = policy.first
         self._end = NEVER if policy.end is None else policy.end
         self._max_delay = NEVER if policy.max_delay is None else policy.max_delay
-        self._least_step = _LEAST_STEP[policy.order]
+        self._least_step = LEAST_STEP[policy.order]
         self._wants_change = policy.change is ANY_CHANGE
         self._last: Sample[Any] | None = None
+
+    @property
+    def held(self) -> tuple[()]:
+        """Nothing: each sample is handed on at once or left out."""
+        return ()
 
     def push(self, sample: Sample[Any]) -> tuple[Sample[Any], ...]:
         """Take in a sample; yield it or nothing."""
@@ -68,7 +74,8 @@ class Filter:
 
     def take_violations(self) -> list[Violation]:
         """Return the violations noticed since this was last asked."""
-        taken, self.violations = self.violations, []
+        taken = self.violations[:]
+        self.violations.clear()
         return taken
 
     def _order_violation(self, sample: Sample[Any], last: TimePoint) -> Violation:

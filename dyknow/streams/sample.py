@@ -11,7 +11,7 @@ from typing import Final, Generic, TypeVar, final
 
 from dyknow.time import Duration, TimePoint
 
-__all__ = ["NO_SAMPLE", "NO_VALUE", "Heartbeat", "NoValue", "Sample"]
+__all__ = ["END_OF_TIME", "NO_SAMPLE", "NO_VALUE", "Heartbeat", "NoValue", "Sample"]
 
 T = TypeVar("T")
 
@@ -53,6 +53,13 @@ class Sample(Generic[T]):
     def delay(self) -> Duration:
         """Available time minus valid time."""
         return Duration(self.available_time - self.valid_time)
+
+    def __deepcopy__(self, memo: object) -> "Sample[T]":
+        return self
+
+
+END_OF_TIME: Final = TimePoint((1 << 63) - 1)
+"""Later than every valid time: a heartbeat until then says that a stream has ended."""
 
 
 @dataclass(slots=True)

@@ -3,14 +3,14 @@
 The constraint is `sample every` of Heintz (2009), section 4.4.5, alone or with `use most recent`.
 """
 
-from bisect import bisect_left, bisect_right, insort
+from bisect import bisect_left, bisect_right
 from collections.abc import Sequence
 from typing import Any
 
 from dyknow.streams.ordering import NEVER, delay_violation
 from dyknow.streams.policy import Constraint, Policy, SampleEvery, Violation
 from dyknow.streams.process import Element
-from dyknow.streams.sample import NO_SAMPLE, Heartbeat, Sample
+from dyknow.streams.sample import END_OF_TIME, NO_SAMPLE, Heartbeat, Sample
 from dyknow.time import Duration, TimePoint, text_from_duration
 
 __all__ = ["MostRecentSampler", "Sampler"]
@@ -61,7 +61,8 @@ class _Publisher:
         self.violations.append(Violation(constraint, sample.valid_time, now, reason, sample))
 
     def take_violations(self) -> list[Violation]:
-        taken, self.violations = self.violations, []
+        taken = self.violations[:]
+        self.violations.clear()
         return taken
 
 
@@ -72,9 +73,9 @@ class Sampler:
     handed on. Samples off the grid are left out, and so are all but the first to arrive for a
     place on it. With a maximal delay, a sample is waited for until that delay has passed, and
     later ones that have arrived already are held back meanwhile; without it, the first sample
-    beyond the expected one proves that it is missing. A heartbeat proves it too. A gap is
-    published and the stream goes on after it; a sample that comes after its place has been given
-    up or taken is published as well.
+    beyond the expected one proves that it is missing. A heartbeat proves it too, except the last
+    one: after the end of a stream nothing is missing. A gap is published and the stream goes on
+    after it; a sample that comes after its place has been given up or taken is published as well.
 
     Attributes:
         period: The period in force, a multiple of the policy's.
@@ -109,6 +110,16 @@ class Sampler:
         self._width = 2 * policy.change.deviation
         self._given_up = self._heard = self._seen = _NOT_BEGUN
         self._take_on(policy.change.period)
+
+    @property
+    def violations(self) -> list[Violation]:
+        """What has been noticed and not yet been taken: the same list at all times."""
+        return self._out.violations
+
+    @property
+    def held(self) -> Sequence[Sample[Any]]:
+        """The samples that are kept back and may be handed on later."""
+        return tuple(self._held)
 
     def push(self, sample: Sample[Any]) -> Sequence[Sample[Any]]:
         """Take in a sample; yield it and held ones if they are next."""
@@ -147,7 +158,7 @@ class Sampler:
             return None
         closes = self._opens + self._width
         if closes <= self._heard:
-            return TimePoint(closes)
+            return TimePoint(closes) if self._is_going_on else None
         return None if self._max_delay == NEVER else TimePoint(closes + self._max_delay)
 
     def take_violations(self) -> list[Violation]:
@@ -171,6 +182,11 @@ class Sampler:
             following = _next_on_grid(last, period, earliest)
             self._expect(min(following, max(expected, last + period)))
         return self._release(now)
+
+    @property
+    def _is_going_on(self) -> bool:
+        """Whether anything can still come: after the end of a stream nothing is missing."""
+        return bool(self._held) or self._heard < END_OF_TIME
 
     @property
     def _expected(self) -> int:
@@ -236,7 +252,7 @@ class Sampler:
 
     def _count_missing(self, settled: int) -> int:
         """Return for how many places nothing can come if all is known up to *settled*."""
-        if self._opens == _NOT_BEGUN:
+        if self._opens == _NOT_BEGUN or not self._is_going_on:
             return 0
         known = min(settled, self._end + self._change.deviation)
         if self._held:
@@ -280,6 +296,7 @@ class MostRecentSampler:
         "_ahead",
         "_change",
         "_end",
+        "_exact",
         "_heard",
         "_latest",
         "_max_delay",
@@ -298,11 +315,22 @@ class MostRecentSampler:
         self._end = NEVER if policy.end is None else policy.end
         self._max_delay = policy.max_delay
         self._heard = _NOT_BEGUN
-        self._latest = NO_SAMPLE
+        # Of the samples with the highest valid time, the last to arrive and the first.
+        self._latest = self._exact = NO_SAMPLE
         self._ahead: list[Sample[Any]] = []
         self.period = policy.change.period
         before = policy.first - self.period
         self._next = _next_on_grid(before, self.period, now - self._max_delay)
+
+    @property
+    def violations(self) -> list[Violation]:
+        """What has been noticed and not yet been taken: the same list at all times."""
+        return self._out.violations
+
+    @property
+    def held(self) -> Sequence[Sample[Any]]:
+        """The samples that are kept back and may be handed on later."""
+        return tuple(self._ahead)
 
     def push(self, sample: Sample[Any]) -> Sequence[Sample[Any]]:
         """Take in a sample; yield it and later ones if they are next on the grid."""
@@ -313,6 +341,7 @@ class MostRecentSampler:
             and not self._ahead
             and sample.available_time > self._out.last
         ):
+            self._out.last = sample.available_time
             self._latest = sample
             self._next = valid_time + self.period
             return (sample,)
@@ -362,19 +391,30 @@ class MostRecentSampler:
         if sample.valid_time > self._end:
             return []
         if sample.valid_time > self._next:
-            insort(self._ahead, sample, key=_valid_time)
+            self._keep_for_later(sample)
             return []
         if self._policy.first <= sample.valid_time <= self._next - self.period:
             self._check_late(sample)
         if sample.valid_time >= self._latest.valid_time:
-            self._latest = sample
+            self._latest = self._exact = sample
         return self._settle(_NOT_BEGUN, sample.available_time)
+
+    def _keep_for_later(self, sample: Sample[Any]) -> None:
+        at = bisect_right(self._ahead, sample.valid_time, key=_valid_time)
+        if at and self._ahead[at - 1].valid_time == sample.valid_time:
+            self._check_repeated(sample)
+        self._ahead.insert(at, sample)
 
     def _check_late(self, sample: Sample[Any]) -> None:
         """Publish a sample that comes when the place it could have had has been filled."""
         if sample.delay > self._max_delay:
             self._out.violations.append(delay_violation(sample, self._policy))
-        elif (self._next - sample.valid_time) % self._change.period == 0:
+        else:
+            self._check_repeated(sample)
+
+    def _check_repeated(self, sample: Sample[Any]) -> None:
+        """Publish a sample for whose time of the grid there is another one."""
+        if (self._next - sample.valid_time) % self._change.period == 0:
             self._out.report(
                 Constraint.ORDER, sample, "there is a sample of this valid time already"
             )
@@ -384,8 +424,8 @@ class MostRecentSampler:
         made: list[Sample[Any]] = []
         while self._next <= self._end:
             valid_time = TimePoint(self._next)
-            if self._latest.valid_time == valid_time:
-                made.append(self._out.pass_on(self._latest, now))
+            if self._exact.valid_time == valid_time:
+                made.append(self._out.pass_on(self._exact, now))
             elif valid_time > settled:
                 break
             elif self._latest is NO_SAMPLE:
@@ -401,6 +441,9 @@ class MostRecentSampler:
         count = bisect_right(self._ahead, self._next, key=_valid_time)
         if count:
             self._latest = self._ahead[count - 1]
+            self._exact = self._ahead[
+                bisect_left(self._ahead, self._latest.valid_time, key=_valid_time)
+            ]
             del self._ahead[:count]
 
 
