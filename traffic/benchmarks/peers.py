@@ -34,20 +34,22 @@ class Peer:
         name: Of the distribution.
         version: Of the installed one.
         fan_out: Hands each sample to so many receivers, through a sampling filter for each.
+        fan_out_shared: The same through one filter for all.
         join: Makes tuples of one sample of each of so many inputs, for one receiver.
     """
 
     name: str
     version: str
     fan_out: Callable[[int, Receive], Emit]
+    fan_out_shared: Callable[[int, Receive], Emit]
     join: Callable[[int, Receive], Sequence[Emit]]
 
 
 def installed_peers() -> list[Peer]:
     """Return the peers that are installed."""
     work = {
-        "reactivex": (_fan_out_of_reactivex, _join_of_reactivex),
-        "streamz": (_fan_out_of_streamz, _join_of_streamz),
+        "reactivex": (_fan_out_of_reactivex, _shared_in_reactivex, _join_of_reactivex),
+        "streamz": (_fan_out_of_streamz, _shared_in_streamz, _join_of_streamz),
     }
     versions = {name: version_of(name) for name in PEERS}
     return [
@@ -99,6 +101,16 @@ def _fan_out_of_reactivex(n: int, receive: Receive) -> Emit:
     return emit
 
 
+def _shared_in_reactivex(n: int, receive: Receive) -> Emit:
+    operators = import_module("reactivex.operators")
+    subject = import_module("reactivex.subject").Subject()
+    sampled = subject.pipe(operators.filter(sampling_filter()), operators.share())
+    for _ in range(n):
+        sampled.subscribe(receive)
+    emit: Emit = subject.on_next
+    return emit
+
+
 def _join_of_reactivex(n: int, receive: Receive) -> Sequence[Emit]:
     make = import_module("reactivex.subject").Subject
     subjects = [make() for _ in range(n)]
@@ -110,6 +122,15 @@ def _fan_out_of_streamz(n: int, receive: Receive) -> Emit:
     source = import_module("streamz").Stream()
     for _ in range(n):
         source.filter(sampling_filter()).sink(receive)
+    emit: Emit = source.emit
+    return emit
+
+
+def _shared_in_streamz(n: int, receive: Receive) -> Emit:
+    source = import_module("streamz").Stream()
+    sampled = source.filter(sampling_filter())
+    for _ in range(n):
+        sampled.sink(receive)
     emit: Emit = source.emit
     return emit
 

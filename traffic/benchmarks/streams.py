@@ -8,7 +8,7 @@ thousand streams. The published curves are drawn from the figures that the text 
 
 import time
 import tracemalloc
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 
 from dyknow.streams.sample import Sample
@@ -37,6 +37,7 @@ from traffic.benchmarks.workloads import (
     Steady,
     Workload,
     ignore,
+    many_policies,
     many_sources,
     many_streams,
     many_units,
@@ -76,6 +77,15 @@ _BY_SOURCES = Published(
 )
 
 
+_SHARED = "one policy for all"
+_OWN = "a policy of its own for each"
+_STREAMS: Mapping[str, Callable[[int], Workload]] = {
+    _SHARED: lambda n: Workload(many_streams(n)),
+    _OWN: lambda n: Workload(many_policies(n)),
+}
+"""The thesis has the first; streams under equal policies share an adapter, others cannot."""
+
+
 @dataclass(frozen=True, slots=True)
 class _Sweep:
     """One experiment: a network that grows."""
@@ -84,7 +94,7 @@ class _Sweep:
     what: str
     x: str
     numbers: Sequence[int]
-    workload: Callable[[int], Workload]
+    workloads: Mapping[str, Callable[[int], Workload]]
     n_samples: int
     one_more: str
     published: Published | None = None
@@ -98,12 +108,17 @@ def run(plan: Plan, on_progress: OnProgress) -> Findings:
     experiments, figures = [], []
     for at, sweep in enumerate(sweeps):
         within = (0.9 * at / len(sweeps), 0.9 * (at + 1) / len(sweeps))
-        experiment, figure = _measured(sweep, repetitions, on_progress, within)
+        experiment, slopes = _measured(sweep, repetitions, on_progress, within)
         experiments.append(experiment)
-        figures.append(figure)
-    figures.append(_memory_of_a_stream(100 if plan.quick else _N_FOR_MEMORY))
+        figures += slopes
+    n_for_memory = 100 if plan.quick else _N_FOR_MEMORY
+    figures += [_memory(name, make(n_for_memory), n_for_memory) for name, make in _STREAMS.items()]
     n_samples = 10 if plan.quick else _N_SAMPLES
-    ratios = [_fan_out(peer, n_samples, repetitions) for peer in installed_peers()]
+    ratios = [
+        _fan_out(peer, n_samples, repetitions, shared=shared)
+        for peer in installed_peers()
+        for shared in (False, True)
+    ]
     return Findings(experiments=experiments, figures=figures, ratios=ratios, notes=missing_peers())
 
 
@@ -120,7 +135,7 @@ def _sweeps(*, quick: bool) -> list[_Sweep]:
             f"n streams from one source, {sampled}",
             "streams",
             _N_STREAMS[::step],
-            lambda n: Workload(many_streams(n)),
+            _STREAMS,
             n_samples,
             "delay for one more stream",
             _BY_STREAMS,
@@ -130,7 +145,7 @@ def _sweeps(*, quick: bool) -> list[_Sweep]:
             f"{_STREAMS_OF_SOURCES} streams from n sources that speak at once, {sampled}",
             "sources",
             _N_SOURCES[::step],
-            lambda n: Workload(many_sources(n, _STREAMS_OF_SOURCES), n),
+            {"DyKnow": lambda n: Workload(many_sources(n, _STREAMS_OF_SOURCES), n)},
             n_samples,
             "delay for one more source",
             _BY_SOURCES,
@@ -140,7 +155,7 @@ def _sweeps(*, quick: bool) -> list[_Sweep]:
             f"{_STREAMS_OF_UNITS} streams, of which n feed units that copy, {sampled}",
             "computational units",
             _N_UNITS[::step],
-            lambda n: Workload(many_units(n, _STREAMS_OF_UNITS)),
+            {"DyKnow": lambda n: Workload(many_units(n, _STREAMS_OF_UNITS))},
             n_samples,
             "delay for one more computational unit",
         ),
@@ -149,7 +164,7 @@ def _sweeps(*, quick: bool) -> list[_Sweep]:
             f"n streams from one source, {sampled}",
             "streams",
             (100, 200) if quick else _MANY_STREAMS,
-            lambda n: Workload(many_streams(n)),
+            _STREAMS,
             n_samples // 10,
             "delay for one more stream, of many",
             logarithmic=True,
@@ -159,46 +174,53 @@ def _sweeps(*, quick: bool) -> list[_Sweep]:
 
 def _measured(
     sweep: _Sweep, repetitions: int, on_progress: OnProgress, within: tuple[float, float]
-) -> tuple[Experiment, Figure]:
+) -> tuple[Experiment, list[Figure]]:
     """Return an experiment, and what one more of what it varies costs."""
-    work = {n: sweep.workload(n) for n in sweep.numbers}
-    trials = {n: _trial(workload, sweep.n_samples) for n, workload in work.items()}
-    found = measure(trials, repetitions, on_progress, within, sweep.x)
+    begin, end = within
+    curves, slopes = [], []
+    for at, (name, make) in enumerate(sweep.workloads.items()):
+        share = (end - begin) / len(sweep.workloads)
+        part = (begin + at * share, begin + (at + 1) * share)
+        trials = {n: _trial(make(n), sweep.n_samples) for n in sweep.numbers}
+        found = measure(trials, repetitions, on_progress, part, sweep.x)
+        curves.append(series(name, found, fitted=True))
+        slopes.append(_slope(sweep, name, found))
     experiment = Experiment(
         name=sweep.name,
         what=f"{sweep.what}, {sweep.n_samples} samples",
         x=sweep.x,
         y="delay of the stream served last",
         unit="µs",
-        series=[series("DyKnow", found, fitted=True)],
+        series=curves,
         published=sweep.published,
         logarithmic=sweep.logarithmic,
     )
-    return experiment, _slope(sweep, found)
+    return experiment, slopes
 
 
 def _trial(workload: Workload, n_samples: int) -> Callable[[], float]:
     return lambda: workload.delay(n_samples) * _MICROSECONDS
 
 
-def _slope(sweep: _Sweep, found: dict[int, list[float]]) -> Figure:
-    """Return the slope of the curve, fitted to each repetition by itself."""
-    rounds = zip(*found.values(), strict=True)
+def _slope(sweep: _Sweep, name: str, found: Mapping[int, Sequence[float]]) -> Figure:
+    """Return the slope of a curve, fitted to each repetition by itself."""
     slopes = [
         line_through(
             [Point(x=n, y=Measurement.of([y])) for n, y in zip(found, values, strict=True)]
         ).slope
-        for values in rounds
+        for values in zip(*found.values(), strict=True)
     ]
-    published = _SLOPES.get(sweep.name)
     return Figure(
-        name=sweep.one_more, unit="µs", value=Measurement.of(slopes), published=published
+        name=f"{sweep.one_more}, {name}" if len(sweep.workloads) > 1 else sweep.one_more,
+        unit="µs",
+        value=Measurement.of(slopes),
+        published=_SLOPES.get(sweep.name),
     )
 
 
-def _memory_of_a_stream(n: int) -> Figure:
-    """Return the bytes that a stream under a policy takes, when it has been running."""
-    network = Workload(many_streams(n)).build([Steady(10)])
+def _memory(name: str, workload: Workload, n: int) -> Figure:
+    """Return the bytes that each of *n* streams takes when it has been running."""
+    network = workload.build([Steady(10)])
     with undisturbed():
         tracemalloc.start()
         for output in network.outputs:
@@ -207,23 +229,23 @@ def _memory_of_a_stream(n: int) -> Figure:
         size, _ = tracemalloc.get_traced_memory()
         tracemalloc.stop()
     value = Measurement.of([size / n])
-    return Figure(name="memory of one stream 'sample every 100'", unit="bytes", value=value)
+    return Figure(name=f"memory of one more stream, {name}", unit="bytes", value=value)
 
 
-def _fan_out(peer: Peer, n_samples: int, rounds: int) -> Ratio:
-    workload = Workload(many_streams(_N_FOR_PEERS))
-    what = f"hand a sample to {_N_FOR_PEERS} receivers, through a sampling filter for each"
+def _fan_out(peer: Peer, n_samples: int, rounds: int, *, shared: bool) -> Ratio:
+    workload = _STREAMS[_SHARED if shared else _OWN](_N_FOR_PEERS)
+    filters = "one sampling filter for all" if shared else "a sampling filter for each"
     return ratio_to(
         peer,
-        what,
+        f"hand a sample to {_N_FOR_PEERS} receivers through {filters}",
         lambda: workload.delay(n_samples),
-        lambda: _delay_of_peer(peer, n_samples),
+        lambda: _delay_of_peer(peer, n_samples, shared=shared),
         rounds,
     )
 
 
-def _delay_of_peer(peer: Peer, n_samples: int) -> float:
-    emit = peer.fan_out(_N_FOR_PEERS, ignore)
+def _delay_of_peer(peer: Peer, n_samples: int, *, shared: bool) -> float:
+    emit = (peer.fan_out_shared if shared else peer.fan_out)(_N_FOR_PEERS, ignore)
     with undisturbed():
         began = time.perf_counter()
         for number in range(n_samples):

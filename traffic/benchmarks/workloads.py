@@ -23,6 +23,7 @@ __all__ = [
     "Steady",
     "Workload",
     "ignore",
+    "many_policies",
     "many_sources",
     "many_streams",
     "many_units",
@@ -58,6 +59,15 @@ class Copy(Reactive):
 def many_streams(n: int) -> str:
     """Return the network of figure 5.6: *n* streams from one source."""
     streams = [f"stream strm{i} = gen with sample every 100" for i in range(1, n + 1)]
+    return "\n".join(["source int src1", "strmgen gen = src1", *streams]) + "\n"
+
+
+def many_policies(n: int) -> str:
+    """Return the network of figure 5.6 with a different policy for each stream."""
+    streams = [
+        f"stream strm{i} = gen with sample every 100, max delay {1000 + i}"
+        for i in range(1, n + 1)
+    ]
     return "\n".join(["source int src1", "strmgen gen = src1", *streams]) + "\n"
 
 

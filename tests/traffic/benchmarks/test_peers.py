@@ -36,7 +36,13 @@ def test_the_filter_samples():
 def test_a_ratio_says_how_much_longer_the_peer_takes():
     """Both are measured in turn, and their time is divided by ours."""
     turns = []
-    peer = Peer("other", "1.0", lambda n, receive: ignore, lambda n, receive: [])
+    peer = Peer(
+        "other",
+        "1.0",
+        lambda n, receive: ignore,
+        lambda n, receive: ignore,
+        lambda n, receive: [],
+    )
 
     ratio = ratio_to(
         peer, "work", lambda: turns.append("ours") or 2.0, lambda: turns.append("theirs") or 6.0, 2
@@ -56,8 +62,9 @@ def test_peers_do_the_work(peer):
     received, joined = [], []
 
     peer.fan_out(3, received.append)(Sample(1, 0, 0))
+    peer.fan_out_shared(3, received.append)(Sample(1, 0, 0))
     for emit in peer.join(2, joined.append):
         emit(Sample(1, 0, 0))
 
-    assert len(received) == 3
+    assert len(received) == 6
     assert len(joined) == 1

@@ -6,6 +6,7 @@ from traffic.benchmarks.workloads import (
     Steady,
     Workload,
     ignore,
+    many_policies,
     many_sources,
     many_streams,
     many_units,
@@ -38,7 +39,13 @@ def test_figure_5_10():
 
 
 @pytest.mark.parametrize(
-    ("text", "n_sources"), [(many_streams(4), 1), (many_sources(3, 5), 3), (many_units(2, 6), 1)]
+    ("text", "n_sources"),
+    [
+        (many_streams(4), 1),
+        (many_policies(4), 1),
+        (many_sources(3, 5), 3),
+        (many_units(2, 6), 1),
+    ],
 )
 def test_every_stream_gets_every_sample(text, n_sources):
     """All samples reach all streams, so that the delay of the last one is that of the whole."""
