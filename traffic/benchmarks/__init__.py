@@ -6,8 +6,8 @@ A benchmark measures and never judges. Read in this order:
 - `measuring`: repeating a measurement, and how a benchmark is asked for
 - `machine`: what it ran on
 - `workloads`: the networks that are measured
-- `streams`, `tables`, `synchronisation`, `memory`: the benchmarks; `peers`: the same work done by
-  other libraries, if they are installed
+- `streams`, `tables`, `synchronisation`, `recordings`, `memory`: the benchmarks; `peers`: the
+  same work done by other libraries, if they are installed
 - `registry`: all benchmarks by name; to add one, write a module and name it there
 - `pictures`: results as pictures
 """
