@@ -95,6 +95,16 @@ class StatePolicy:
         """Whether states come at regular times."""
         return self.occasion is Occasion.SAMPLED
 
+    @property
+    def is_approximated(self) -> bool:
+        """Whether something may stand for a sample that an input does not have."""
+        return self.approximation is not StateApproximation.NONE
+
+    @property
+    def is_linear(self) -> bool:
+        """Whether the samples before and after stand for a sample that an input does not have."""
+        return self.approximation is StateApproximation.LINEAR
+
     def _limits(self) -> list[str]:
         faults = []
         if self.period is not None and self.period <= 0:
@@ -128,12 +138,11 @@ class StatePolicy:
 
     def _needs(self) -> list[str]:
         faults = []
-        is_approximated = self.approximation is not StateApproximation.NONE
         if self.period is not None and not self.is_sampled:
             faults.append(f"'{self.occasion.value}' has no sample period")
-        if self.occasion is Occasion.ALL_UPDATES and not is_approximated:
+        if self.occasion is Occasion.ALL_UPDATES and not self.is_approximated:
             faults.append("'all updates' needs an approximation, such as 'use most recent'")
-        if self.delay_before_approximation is not None and not is_approximated:
+        if self.delay_before_approximation is not None and not self.is_approximated:
             faults.append("'delay before approximation' needs an approximation")
         if self.settling is Settling.AT_MAX_DELAY:
             if self.max_delay is None:

@@ -1,40 +1,73 @@
 """Several streams into one stream of states.
 
-A state holds values of several fluents at one valid time (Heintz 2009, definitions 7.8.1 to
-7.8.3). Of the family of state streams in section 7.8 this is the exact one: every value in a
-state has the valid time of the state, none is approximated. It is a reproducible join: which
-states there are depends on valid times alone, not on when samples arrive.
+A state holds values of several fluents at one valid time (Heintz 2009, *DyKnow: A Stream-Based
+Knowledge Processing Middleware Framework*, definitions 7.8.1 to 7.8.3); which states there are,
+and when they are made, is up to a `StatePolicy`. The algorithm is the improved one of section
+7.8.2 with its five categories of inputs or, where the policy asks for it, the basic one of
+section 7.8.1.
+
+These joins are reproducible: as long as no delay of the policy runs out and the inputs keep their
+own policies, states depend on valid times alone, not on when samples arrive. (Of an input that
+says the same valid time twice, what it had said last when the state was made counts; an input in
+strict order does no such thing.) Joins that take what is there are in `dyknow.streams.joining`.
+
+Where we differ from the thesis: an input that promises neither order nor maximal delay is taken to
+be in monotone order; the delay before approximation counts from the valid time of the sample that
+is waited for, as the last remark on the thesis' example has it, not from that of the state; and
+no state is made before its valid time has come.
 """
 
 from collections.abc import Sequence
+from math import gcd
 from typing import Any
 
-from dyknow.streams.policy import Constraint, Policy, Violation
-from dyknow.streams.process import Reactive
-from dyknow.streams.sample import Sample
-from dyknow.streams.state_policy import StatePolicy
-from dyknow.time import TimePoint, text_from_duration
+from dyknow.streams.policy import Policy, Violation
+from dyknow.streams.process import Element
+from dyknow.streams.sample import NO_VALUE, Heartbeat, Sample
+from dyknow.streams.state_buffers import FOREVER, MISSING, Buffer
+from dyknow.streams.state_policy import Occasion, StatePolicy
+from dyknow.streams.state_reports import StateReports, SynchronisationCounts
+from dyknow.streams.state_times import Grid, Updates
+from dyknow.streams.state_waiting import Waiting
+from dyknow.streams.values import are_equal
+from dyknow.time import Duration, TimePoint
 
-__all__ = ["Synchronisation"]
+__all__ = ["COMMON_TIMES", "Synchronisation"]
+
+COMMON_TIMES = StatePolicy()
+"""A state for each valid time that all inputs have, once it is certain that they have it."""
 
 
-class Synchronisation(Reactive):
-    """A computational unit that makes a state when every input has a sample of its valid time.
+class Synchronisation:
+    """A computational unit that makes states out of its inputs, as a policy says.
 
-    The value of a state is the tuple of the inputs' values. Inputs must be in monotone order;
-    then a stream that has reached a valid time will not say more about earlier ones, so that a
-    state some input has left out is given up, and published as a violation, as soon as that is
-    certain. So is a sample that comes after its time has been given up. When an input corrects
-    itself before the state is complete, the later sample counts. States come in strict order.
+    The value of a state is the tuple of the inputs' values. States come in strict order. A state
+    is made as soon as all is known about its valid time: every input has a sample of it, or
+    promises (by its order, its sample period, its maximal delay or a heartbeat) that no better
+    one will come; or when a delay of the policy has passed.
+
+    A sampled state is always made, if need be with `NO_VALUE`, and what is missing is published
+    as a violation. A state at the valid time of an input is made only if every other input has
+    a value or an approximation; otherwise it is given up, and that is published. So are samples
+    that come too late or out of order. When times have been passed over without a state, a
+    heartbeat says so.
+
+    Without a maximal delay a silent input makes the samples of the others wait. When more of
+    one input wait than the policy's capacity, states are given up as if the delay had passed.
+
+    Attributes:
+        names: What violations call the inputs.
+        policy: How states are made.
+        buffers: What is known of each input.
     """
 
     def __init__(
         self,
         names: Sequence[str],
-        policy: StatePolicy = StatePolicy(),  # noqa: B008, a frozen value
+        policy: StatePolicy = COMMON_TIMES,
         inputs: Sequence[Policy] = (),
     ) -> None:
-        """Join as many inputs as there are *names*, by which violations call them.
+        """Join as many inputs as there are *names*.
 
         Args:
             names: What violations call the inputs.
@@ -45,53 +78,228 @@ class Synchronisation(Reactive):
         Raises:
             ValueError: The policy asks for what the inputs do not have.
         """
-        if policy != StatePolicy():
-            raise ValueError("only states of common valid times can be made yet")
-        if inputs and len(inputs) != len(names):
-            raise ValueError(f"expected {len(names)} policies of inputs, found {len(inputs)}")
-        self._names = tuple(names)
-        self._pending: dict[TimePoint, dict[int, Any]] = {}
-        self._reached = [TimePoint(-1)] * len(self._names)
-        self._last_state = TimePoint(-1)
-        self._violations: list[Violation] = []
+        kept = tuple(inputs) or (Policy(),) * len(names)
+        if not names:
+            raise ValueError("a synchronisation needs at least one input")
+        if len(kept) != len(names):
+            raise ValueError(f"expected {len(names)} policies of inputs, found {len(kept)}")
+        self.names = tuple(names)
+        self.policy = policy
+        self.buffers = tuple(Buffer(each, policy) for each in kept)
+        self._grid = _grid(self.names, policy, kept) if policy.is_sampled else None
+        self._times: Grid | Updates = self._grid or Updates()
+        self._waiting = Waiting(policy, self.buffers)
+        self._reports = StateReports(self.names)
+        self._begins = policy.start or TimePoint(0)
+        self._ends = TimePoint(FOREVER - 1) if policy.end is None else policy.end
+        self._settled = self._said = TimePoint(self._begins - 1)
+        self._last: Sample[Any] | None = None
+        self._has_begun = policy.start is not None or not policy.is_approximated
+        self._crowded: int | None = None
+        self._waiting.turn_to(self._times.current)
 
-    def push(self, now: TimePoint, inputs: tuple[Sample[Any], ...]) -> list[Sample[Any]]:
-        """Take in the new samples among *inputs*; yield the states that are complete."""
+    @property
+    def time(self) -> TimePoint | None:
+        """The valid time that is to be settled next, if one is known."""
+        return None if self._waiting.time == FOREVER else self._waiting.time
+
+    @property
+    def counts(self) -> SynchronisationCounts:
+        """What has happened so far."""
+        return self._reports.counts
+
+    def push(self, now: TimePoint, inputs: tuple[Sample[Any], ...]) -> list[Element]:
+        """Take in the new samples among *inputs*; yield the states that can be made."""
         for at, sample in enumerate(inputs):
             if sample.available_time == now:
                 self._take(at, sample)
-        if not self._pending:
-            return []
-        settled = min(self._reached)
-        times = sorted(time for time in self._pending if time <= settled)
-        states = [self._settle(time, now) for time in times]
-        return [state for state in states if state is not None]
+        return self._settle(now)
+
+    def beat(self, now: TimePoint, at: int, heartbeat: Heartbeat) -> list[Element]:
+        """Take in how far an input is complete; yield what follows, maybe a heartbeat."""
+        buffer = self.buffers[at]
+        buffer.hear(heartbeat.until)
+        self._waiting.look_at(buffer)
+        made = self._settle(now)
+        complete = self._complete()
+        if complete > self._said:
+            self._said = complete
+            made.append(Heartbeat(complete, now))
+        return made
+
+    def advance(self, now: TimePoint) -> list[Element]:
+        """Yield the states for which there is no more waiting at *now*."""
+        return self._settle(now)
+
+    def due(self) -> TimePoint | None:
+        """Return when the next state will have been waited for long enough, if ever."""
+        if self._waiting.time <= self._ends:
+            return self._waiting.due()
+        begins = FOREVER if self._grid is None else self._grid.begins(self.buffers)
+        return None if begins == FOREVER else begins
 
     def take_violations(self) -> list[Violation]:
         """Return the violations noticed since this was last asked."""
-        taken, self._violations = self._violations, []
-        return taken
+        return self._reports.take()
 
     def _take(self, at: int, sample: Sample[Any]) -> None:
-        if sample.valid_time < self._reached[at] or sample.valid_time <= self._last_state:
-            reached = text_from_duration(self._reached[at])
-            reason = f"'{self._names[at]}' is out of order: it has reached {reached}"
-            self._report(Constraint.ORDER, sample.valid_time, sample.available_time, reason)
+        buffer, valid_time = self.buffers[at], sample.valid_time
+        if valid_time <= buffer.complete:
+            self._reports.out_of_order(at, sample, max(buffer.reached, buffer.heard))
             return
-        self._reached[at] = sample.valid_time
-        self._pending.setdefault(sample.valid_time, {})[at] = sample.value
+        if self._settled < valid_time <= self._ends:
+            buffer.add(sample)
+            self._times.note(buffer, valid_time)
+            if len(buffer.samples) > self.policy.capacity:
+                self._crowd(at, sample.available_time)
+        else:
+            self._take_outside(at, sample)
+        if self._times.current == self._waiting.time:
+            self._waiting.look_at(buffer)
+        else:
+            self._waiting.turn_to(self._times.current)
 
-    def _settle(self, time: TimePoint, now: TimePoint) -> Sample[Any] | None:
-        values = self._pending.pop(time)
-        if len(values) < len(self._names):
-            absent = [f"'{name}'" for at, name in enumerate(self._names) if at not in values]
-            reason = f"no state, for want of a sample of {' and of '.join(absent)}"
-            self._report(Constraint.CHANGE, time, now, reason)
-            return None
-        self._last_state = time
-        return Sample(tuple(values[at] for at in range(len(values))), time, now)
+    def _take_outside(self, at: int, sample: Sample[Any]) -> None:
+        """Take in a sample that is not for a state to come, but may serve to approximate one."""
+        buffer, valid_time = self.buffers[at], sample.valid_time
+        if valid_time > self._ends:
+            is_needed = self.policy.is_linear and buffer.reached <= self._ends
+        else:
+            is_needed = self.policy.is_approximated
+            if valid_time <= buffer.late:
+                self._reports.late(at, sample, self._settled)
+            elif valid_time >= self._begins and self._times.has(valid_time):
+                self._reports.repeated(at, sample)
+        if is_needed:
+            buffer.add(sample)
+            buffer.forget(self._settled)
+        else:
+            buffer.note(valid_time)
 
-    def _report(
-        self, constraint: Constraint, valid_time: TimePoint, now: TimePoint, reason: str
-    ) -> None:
-        self._violations.append(Violation(constraint, valid_time, now, reason))
+    def _settle(self, now: TimePoint) -> list[Element]:
+        made: list[Element] = []
+        if self._grid is not None and self._grid.begins(self.buffers) <= now:
+            self._begin(self._grid)
+        while self._waiting.time <= self._ends and (
+            self._waiting.is_over(now) or self._is_crowded(now)
+        ):
+            made.extend(self._state(self._waiting.time, now))
+            self._times.move_on()
+            self._waiting.turn_to(self._times.current)
+        if self._settled > self._said:
+            self._said = self._settled
+            made.append(Heartbeat(self._settled, now))
+        return made
+
+    def _begin(self, grid: Grid) -> None:
+        """Start the grid where the inputs do."""
+        self._begins = grid.begin(self.buffers)
+        self._settled = TimePoint(self._begins - 1)
+        self._said = max(self._said, self._settled)
+        for buffer in self.buffers:
+            buffer.forget(self._begins)
+        self._waiting.turn_to(grid.current)
+
+    def _state(self, time: TimePoint, now: TimePoint) -> tuple[Sample[Any], ...]:
+        """Settle a valid time; return its state, if there is to be one."""
+        is_early = self._waiting.n_open > 0 and self._is_early(time, now)
+        values = [buffer.value(time) for buffer in self.buffers]
+        missing = [at for at, value in enumerate(values) if value is MISSING]
+        self._settled = time
+        if missing and not self._fill(values, missing, now):
+            return ()
+        self._has_begun = True
+        if self.policy.is_linear:
+            self._report_gaps(values, now)
+        state = Sample(tuple(values), time, now)
+        if not self._is_wanted(state):
+            return ()
+        self._said = time
+        self._last = state
+        self.counts.states += 1
+        self.counts.early += is_early
+        return (state,)
+
+    def _is_early(self, time: TimePoint, now: TimePoint) -> bool:
+        """Return whether a better state could come; mark the inputs that were not complete."""
+        is_early = False
+        for buffer in self.buffers:
+            if buffer.complete < time:
+                is_early = is_early or buffer.complete_at(now) < buffer.needed(time)
+                buffer.late = time
+        return is_early
+
+    def _fill(self, values: list[Any], missing: list[int], now: TimePoint) -> bool:
+        """Put `NO_VALUE` for what is missing of a sampled state; report what is missing."""
+        if self._grid is not None:
+            self._reports.incomplete(missing, self._settled, now)
+            for at in missing:
+                values[at] = NO_VALUE
+        elif self._has_begun:
+            self._reports.given_up(missing, self._settled, now)
+        return self._grid is not None
+
+    def _report_gaps(self, values: Sequence[Any], now: TimePoint) -> None:
+        """Report inputs whose values have none in between."""
+        for at, value in enumerate(values):
+            if value is NO_VALUE and self.buffers[at].samples:
+                kind = type(self.buffers[at].samples[0].value)
+                if kind is not type(NO_VALUE):
+                    self._reports.not_interpolated(at, self._settled, now, kind)
+
+    def _is_wanted(self, state: Sample[Any]) -> bool:
+        """Return whether the policy wants a state after the last one."""
+        last = self._last
+        if last is None:
+            return True
+        match self.policy.occasion:
+            case Occasion.ANY_CHANGE:
+                return not are_equal(last.value, state.value)
+            case Occasion.ALL_UPDATES:
+                return all(b.samples[0].valid_time > last.valid_time for b in self.buffers)
+            case _:
+                return True
+
+    def _is_crowded(self, now: TimePoint) -> bool:
+        """Return whether too many samples of an input wait; report it."""
+        at, capacity = self._crowded, self.policy.capacity
+        if at is None or len(self.buffers[at].samples) <= capacity:
+            self._crowded = None
+            return False
+        self._reports.crowded(at, self._waiting.time, now, capacity)
+        return True
+
+    def _crowd(self, at: int, now: TimePoint) -> None:
+        """Note that too many samples wait; before states have begun, forget the oldest."""
+        buffer = self.buffers[at]
+        if self._waiting.time != FOREVER:
+            self._crowded = at
+            return
+        buffer.forget(max(self._complete(), TimePoint(0)))
+        if len(buffer.samples) > self.policy.capacity:
+            self._reports.unused(at, buffer.samples.pop(0), now, self.policy.capacity)
+
+    def _complete(self) -> TimePoint:
+        """Return up to which valid time it is certain that no state will come."""
+        if self._waiting.time != FOREVER and self._grid is not None:
+            complete = TimePoint(self._waiting.time - 1)
+        elif self._grid is not None:
+            complete = max(TimePoint(min(b.first, b.complete + 1) - 1) for b in self.buffers)
+        else:
+            complete = min(buffer.complete for buffer in self.buffers)
+            complete = min(complete, TimePoint(self._waiting.time - 1))
+        return FOREVER if complete >= self._ends else complete
+
+
+def _grid(names: Sequence[str], policy: StatePolicy, inputs: Sequence[Policy]) -> Grid:
+    """Return the grid of a sampled synchronisation; its period may follow from the inputs'."""
+    if policy.period is not None:
+        return Grid(policy.start, policy.period)
+    unsampled = [name for name, each in zip(names, inputs, strict=True) if each.period is None]
+    if unsampled:
+        raise ValueError(
+            f"states without a sample period of their own need inputs that are sampled, "
+            f"'{unsampled[0]}' is not"
+        )
+    periods = [each.period for each in inputs if each.period is not None]
+    return Grid(policy.start, Duration(gcd(*periods)))
