@@ -1,16 +1,31 @@
-"""Does a finished stream keep a policy?
+"""Is a finished stream one that its term allows?
 
 This is the meaning of policies as definitions 4.5.9 to 4.5.11 of Heintz (2009) give it, against
-which the adapters that work online are tested.
+which the adapters that work online are tested. In three places we depart from the letter.
+
+- Each sample of a generator is handed on at most once. By the letter a sample could be repeated
+  without end, later and later, and a stream that is not sampled would never be maximal.
+- Under `any change` samples keep their order. By the letter a repetition that was left out could
+  come back after another value, where it would be a change.
+- With `use most recent`, a sample of exactly the valid time wanted may be handed on when it
+  arrives, and it is the first of them that counts; by the letter it is the last that comes
+  before the end of the maximal delay, which must always be waited for. An approximation may be
+  handed on as soon as the value that it repeats is there: whoever has heard a heartbeat knows
+  that none will come that is better.
+
+Where a stream may be given a longer period under load, what a shorter period would have asked for
+besides is not missed.
 """
 
 from collections.abc import Iterator
 from itertools import pairwise
 from typing import Any
 
+from dyknow.streams.approximation import extend
+from dyknow.streams.content import Contents
+from dyknow.streams.maximality import omissions
 from dyknow.streams.policy import (
     ANY_CHANGE,
-    Approximation,
     Constraint,
     Order,
     Policy,
@@ -18,16 +33,36 @@ from dyknow.streams.policy import (
     Violation,
 )
 from dyknow.streams.sample import Sample
-from dyknow.streams.stream import FluentStream, most_recent_at
+from dyknow.streams.stream import FluentStream
 from dyknow.streams.values import are_equal
 from dyknow.time import TimePoint, text_from_duration
 
-__all__ = ["extend", "is_substream", "keeps", "violations"]
+__all__ = [
+    "is_maximal",
+    "is_substream",
+    "satisfies",
+    "term_violations",
+    "violations",
+]
 
 
-def keeps(stream: FluentStream, policy: Policy) -> bool:
+def satisfies(stream: FluentStream, policy: Policy) -> bool:
     """Return whether *stream* satisfies *policy* (definition 4.5.11)."""
     return not violations(stream, policy)
+
+
+def is_substream(part: FluentStream, whole: FluentStream) -> bool:
+    """Return whether *part* could be made from *whole* by delay and omission (def. 4.5.9)."""
+    return not _strangers(part, whole)
+
+
+def is_maximal(part: FluentStream, whole: FluentStream, policy: Policy, until: TimePoint) -> bool:
+    """Return whether *part* has all that *policy* lets through of *whole* (definition 4.5.10).
+
+    *part* satisfies the policy and is a substream of the extended stream. *until* is the time up
+    to which both are known.
+    """
+    return not omissions(part, whole, policy, until)
 
 
 def violations(stream: FluentStream, policy: Policy) -> list[Violation]:
@@ -41,37 +76,22 @@ def violations(stream: FluentStream, policy: Policy) -> list[Violation]:
     return found
 
 
-def is_substream(part: FluentStream, whole: FluentStream) -> bool:
-    """Return whether *part* could be made from *whole* by delay and omission (def. 4.5.9)."""
-    return all(any(_is_source_of(other, sample) for other in whole) for sample in part)
+def term_violations(
+    part: FluentStream, whole: FluentStream, policy: Policy, until: TimePoint
+) -> list[Violation]:
+    """Return why *part* is not a stream that `whole with policy` allows, and where.
 
-
-def extend(stream: FluentStream, policy: Policy, until: TimePoint) -> FluentStream:
-    """Return the stream with approximated samples, as far as *until* (definition 4.5.10).
-
-    The definition's stream may be endless, hence *until*. A time-point at which nothing has
-    been available yet gives no sample.
+    Each violation names its definition: 4.3.5 for available times out of order, 4.5.9 for a
+    sample that the generator has not produced, 4.5.10 for one that is left out, and 4.5.11 for a
+    constraint that is broken. They are in order of the time at which they could be noticed. What
+    is left out is only looked for in streams whose other samples are as they should be; gaps of a
+    sampled stream are no hindrance.
     """
-    if policy.approximation is Approximation.NONE:
-        return stream
-    assert policy.period is not None  # the policy says so itself
-    assert policy.max_delay is not None
-    end = until if policy.end is None else min(until, policy.end)
-    extended = []
-    for time in range(policy.first, end + 1, policy.period):
-        query_time = TimePoint(time + policy.max_delay)
-        value = most_recent_at(stream, TimePoint(time), query_time)
-        if value.valid_time >= 0:
-            extended.append(Sample(value.value, TimePoint(time), query_time))
-    return extended
-
-
-def _is_source_of(other: Sample[Any], sample: Sample[Any]) -> bool:
-    return (
-        other.available_time <= sample.available_time
-        and other.valid_time == sample.valid_time
-        and are_equal(other.value, sample.value)
-    )
+    found = [*_unordered(part), *_strangers(part, extend(whole, policy, until))]
+    found += violations(part, policy)
+    if all(one.constraint is Constraint.CHANGE and policy.period for one in found):
+        found += [_omission(sample) for sample in omissions(part, whole, policy, until)]
+    return sorted(found, key=lambda violation: violation.noticed_at)
 
 
 def _alone(sample: Sample[Any], policy: Policy) -> Iterator[Violation]:
@@ -96,14 +116,62 @@ def _together(before: Sample[Any], sample: Sample[Any], policy: Policy) -> Itera
             sample,
             f"the valid time does not follow {then} in {policy.order.value}",
         )
-    if isinstance(policy.change, SampleEvery) and step != policy.change.period:
-        expected = text_from_duration(before.valid_time + policy.change.period)
-        yield _violation(
-            Constraint.CHANGE, sample, f"expected the sample with valid time {expected}"
-        )
+    if isinstance(policy.change, SampleEvery) and not policy.change.allows_step(step):
+        reason = f"expected the sample with valid time {_expected(before, policy.change)}"
+        yield _violation(Constraint.CHANGE, sample, reason)
     if policy.change is ANY_CHANGE and step == 0 and are_equal(before.value, sample.value):
         yield _violation(Constraint.CHANGE, sample, "neither value nor valid time has changed")
 
 
-def _violation(constraint: Constraint, sample: Sample[Any], reason: str) -> Violation:
-    return Violation(constraint, sample.valid_time, sample.available_time, reason)
+def _expected(before: Sample[Any], change: SampleEvery) -> str:
+    times = [text_from_duration(before.valid_time + period) for period in change.periods()]
+    deviation = text_from_duration(change.deviation)
+    within = f", give or take {deviation}" if change.deviation else ""
+    return f"{' or '.join(times)}{within}"
+
+
+def _unordered(stream: FluentStream) -> list[Violation]:
+    return [
+        Violation(
+            Constraint.AVAILABILITY,
+            sample.valid_time,
+            sample.available_time,
+            "the available time is not later than "
+            f"{text_from_duration(before.available_time)} of the sample before it",
+            sample,
+            definition="4.3.5",
+        )
+        for before, sample in pairwise(stream)
+        if sample.available_time <= before.available_time
+    ]
+
+
+def _strangers(part: FluentStream, whole: FluentStream) -> list[Violation]:
+    """Return the samples of *part* that *whole* has not got, or not got in time."""
+    earliest: dict[int, TimePoint] = {}
+    contents = Contents()
+    for sample in whole:
+        earliest.setdefault(contents.number(sample), sample.available_time)
+    found = []
+    for sample in part:
+        since = earliest.get(contents.number(sample))
+        if since is None:
+            reason = "the generator has no sample of this valid time and value"
+        elif since > sample.available_time:
+            reason = f"the generator has this sample no earlier than {text_from_duration(since)}"
+        else:
+            continue
+        found.append(_violation(Constraint.ORIGIN, sample, reason, definition="4.5.9"))
+    return found
+
+
+def _omission(sample: Sample[Any]) -> Violation:
+    reason = "the policy would let this sample through"
+    return _violation(Constraint.OMISSION, sample, reason, definition="4.5.10")
+
+
+def _violation(
+    constraint: Constraint, sample: Sample[Any], reason: str, *, definition: str = "4.5.11"
+) -> Violation:
+    times = (sample.valid_time, sample.available_time)
+    return Violation(constraint, *times, reason, sample, definition=definition)

@@ -3,11 +3,15 @@
 A fluent stream is a sequence of samples in order of available time, which is unique. Each
 function here is one definition of Heintz (2009), *DyKnow: A Stream-Based Knowledge Processing
 Middleware Framework*, section 4.3, on a stream that is held as a whole. `NO_SAMPLE` stands for
-the absence of an answer.
+the absence of an answer. That samples are in order of available time is made use of; whoever
+asks many questions of one long stream asks them of a `dyknow.streams.history.History`.
 """
 
+from bisect import bisect_left, bisect_right
 from collections.abc import Iterable, Sequence
-from itertools import pairwise
+from heapq import merge
+from itertools import count, pairwise
+from operator import itemgetter
 from typing import Any
 
 from dyknow.streams.sample import NO_SAMPLE, Sample
@@ -32,17 +36,20 @@ FluentStream = Sequence[Sample[Any]]
 
 def is_fluent_stream(samples: FluentStream) -> bool:
     """Return whether available times are unique and in order (definition 4.3.5)."""
-    return all(one.available_time < other.available_time for one, other in pairwise(samples))
+    return all(
+        one.available_time < other.available_time for one, other in pairwise(samples)
+    ) and not any(sample is NO_SAMPLE for sample in samples)
 
 
 def available(stream: FluentStream, time: TimePoint) -> FluentStream:
     """Return the samples that are available at *time* (definition 4.3.7)."""
-    return [sample for sample in stream if sample.available_time <= time]
+    return stream[: bisect_right(stream, time, key=_available_time)]
 
 
 def last_available(stream: FluentStream, time: TimePoint) -> Sample[Any]:
     """Return the sample that became available last, up to *time* (definition 4.3.8)."""
-    return _last(available(stream, time))
+    number = bisect_right(stream, time, key=_available_time)
+    return stream[number - 1] if number else NO_SAMPLE
 
 
 def valid_before(stream: FluentStream, time: TimePoint, query_time: TimePoint) -> FluentStream:
@@ -61,12 +68,15 @@ def last_valid_before(
 
 def most_recent_at(stream: FluentStream, time: TimePoint, query_time: TimePoint) -> Sample[Any]:
     """Return the one of `last_valid_before` that became available last (definition 4.3.11)."""
-    return _last(last_valid_before(stream, time, query_time))
+    return last_available(last_valid_before(stream, time, query_time), query_time)
 
 
 def previous(stream: FluentStream, sample: Sample[Any]) -> Sample[Any]:
     """Return the sample that became available before *sample* (definition 4.3.12)."""
-    return _last([s for s in stream if s.available_time < sample.available_time])
+    if sample is NO_SAMPLE:
+        return NO_SAMPLE
+    number = bisect_left(stream, sample.available_time, key=_available_time)
+    return stream[number - 1] if number else NO_SAMPLE
 
 
 def available_times(*streams: FluentStream) -> set[TimePoint]:
@@ -76,11 +86,20 @@ def available_times(*streams: FluentStream) -> set[TimePoint]:
 
 def join(*streams: FluentStream) -> FluentStream:
     """Return, for each time with something new, the last of each stream (definition 4.3.16)."""
-    return [
-        Sample(tuple(last_available(stream, time) for stream in streams), time, time)
-        for time in sorted(available_times(*streams))
-    ]
+    last = [NO_SAMPLE] * len(streams)
+    joined: list[Sample[Any]] = []
+    for time, at, sample in merge(*map(_numbered, count(), streams), key=itemgetter(0)):
+        last[at] = sample
+        if joined and joined[-1].available_time == time:
+            joined[-1].value = tuple(last)
+        else:
+            joined.append(Sample(tuple(last), time, time))
+    return joined
 
 
-def _last(samples: Iterable[Sample[Any]]) -> Sample[Any]:
-    return max(samples, key=lambda sample: sample.available_time, default=NO_SAMPLE)
+def _numbered(at: int, stream: FluentStream) -> Iterable[tuple[TimePoint, int, Sample[Any]]]:
+    return ((sample.available_time, at, sample) for sample in stream)
+
+
+def _available_time(sample: Sample[Any]) -> TimePoint:
+    return sample.available_time
