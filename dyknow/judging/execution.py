@@ -6,12 +6,12 @@ number NUMBER (from 1) of the process at RECEIVER, and `output/NAME` for an outp
 application.
 """
 
-from collections.abc import Collection, Mapping, Sequence
-from dataclasses import dataclass, field
-from typing import Any, Protocol
+from collections.abc import Collection, Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Protocol
 
 from dyknow.runtime.subscriptions import StreamViolation
-from dyknow.streams.sample import Heartbeat, Sample
+from dyknow.streams.process import Element
 from dyknow.time import TimePoint
 
 __all__ = ["Execution", "Interpretation"]
@@ -32,11 +32,12 @@ class Execution(Protocol):
     def outputs(self) -> Collection[str]:
         """The names of the output streams that were asked for."""
 
-    def samples(self, topic: str) -> Sequence[Sample[Any]]:
-        """Return the samples of a stream in the order in which they became available."""
+    def contents(self, topic: str) -> Iterable[Element]:
+        """Return samples and heartbeats of a stream in the order in which they were recorded.
 
-    def heartbeats(self, topic: str) -> Sequence[Heartbeat]:
-        """Return the heartbeats of a stream in the order in which they became available."""
+        Raises:
+            DyKnowError: They cannot be read.
+        """
 
     def violations(self) -> Sequence[StreamViolation] | None:
         """Return the violations that were published, or None if they are not known."""
@@ -48,30 +49,24 @@ class Interpretation:
 
     Attributes:
         until: The time up to which everything is known.
-        streams: The samples by topic.
+        streams: Samples and heartbeats by topic.
         outputs: The names of the output streams that were asked for.
         published: The violations; None if they are not known.
-        beats: The heartbeats by topic, where there are any.
     """
 
     until: TimePoint
-    streams: Mapping[str, Sequence[Sample[Any]]]
+    streams: Mapping[str, Sequence[Element]]
     outputs: Collection[str]
     published: Sequence[StreamViolation] | None = ()
-    beats: Mapping[str, Sequence[Heartbeat]] = field(default_factory=dict)
 
     @property
     def topics(self) -> Collection[str]:
         """The topics of all streams."""
         return self.streams.keys()
 
-    def samples(self, topic: str) -> Sequence[Sample[Any]]:
-        """Return the samples of a stream."""
+    def contents(self, topic: str) -> Sequence[Element]:
+        """Return samples and heartbeats of a stream."""
         return self.streams[topic]
-
-    def heartbeats(self, topic: str) -> Sequence[Heartbeat]:
-        """Return the heartbeats of a stream."""
-        return self.beats.get(topic, ())
 
     def violations(self) -> Sequence[StreamViolation] | None:
         """Return the violations that were published."""

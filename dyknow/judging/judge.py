@@ -91,17 +91,25 @@ class _Judge:
         label = process.label
         definition = Definition.SOURCE if process.is_source else Definition.UNIT
         draft = _Draft(label, definition, self._keep)
+        self._read(label, draft)
         if label in self._streams:
-            draft.samples = len(self._streams.as_recorded(label))
             draft.tally.add(self._wellformed(process))
             draft.unjudged.extend(self._reasons_against_computing(process))
             if not draft.unjudged:
                 self._compute(process, draft)
-        else:
-            draft.unjudged.append("it was not recorded")
         if draft.basis is Basis.NOTHING:
             self._published.leave_open((label, label, 0))
         return self._finished(draft)
+
+    def _read(self, topic: str, draft: _Draft) -> None:
+        """Read a stream, if it was recorded and can be read."""
+        if topic not in self._streams:
+            draft.unjudged.append("it was not recorded")
+        elif fault := self._streams.fault(topic):
+            whole = "a stream that can be read"
+            draft.tally.add([Breach(topic, Definition.MODEL, whole, fault)])
+        else:
+            draft.samples = len(self._streams.as_recorded(topic))
 
     def _wellformed(self, process: DeclaredProcess) -> Iterable[Breach]:
         label = process.label
@@ -156,11 +164,9 @@ class _Judge:
         """Judge a stream term (definitions 4.5.9 to 4.5.12)."""
         definition = Definition.STREAM if stream.is_output else Definition.TERM
         draft = _Draft(stream.topic, definition, self._keep)
+        self._read(stream.topic, draft)
         if stream.topic in self._streams:
-            draft.samples = len(self._streams.as_recorded(stream.topic))
             draft.tally.add(order_breaches(stream.topic, self._streams.as_recorded(stream.topic)))
-        else:
-            draft.unjudged.append("it was not recorded")
         if stream.provider in self._streams:
             self._adapt(stream, draft)
         else:
@@ -180,7 +186,7 @@ class _Judge:
         draft.basis = Basis.RECORDED
         recorded, provider = self._streams[stream.topic], self._streams[stream.provider]
         published = self._published.of(_violated(stream))
-        term = TermBreaches(stream, recorded, provider, adapted, published, self._until)
+        term = TermBreaches(stream, recorded, provider, adapted, self._until)
         draft.tally.add(term.all())
         draft.tally.add(policy_breaches(stream, recorded, published))
 

@@ -1,10 +1,11 @@
 """The streams of an execution, put in order, with those at hand that were used last."""
 
 from collections import OrderedDict
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from heapq import merge
 from typing import Any
 
+from dyknow.errors import DyKnowError
 from dyknow.judging.execution import Execution
 from dyknow.streams.process import Element
 from dyknow.streams.sample import Heartbeat, Sample
@@ -27,7 +28,7 @@ class KnownStreams:
     def __init__(self, execution: Execution) -> None:
         self._execution = execution
         self._topics = frozenset(execution.topics)
-        self._recent: OrderedDict[str, Sequence[Sample[Any]]] = OrderedDict()
+        self._recent: OrderedDict[str, _Contents] = OrderedDict()
 
     def __contains__(self, topic: str) -> bool:
         return topic in self._topics
@@ -52,8 +53,8 @@ class KnownStreams:
         return self._topics
 
     def heartbeats(self, topic: str) -> Sequence[Heartbeat]:
-        """Return the heartbeats of a stream in order of available time."""
-        return self._execution.heartbeats(topic)
+        """Return the heartbeats of a stream."""
+        return self._contents(topic).heartbeats
 
     def elements(self, topic: str) -> Iterator[Element]:
         """Yield samples and heartbeats in order of available time; at one time, samples first.
@@ -67,12 +68,37 @@ class KnownStreams:
 
     def as_recorded(self, topic: str) -> Sequence[Sample[Any]]:
         """Return the samples of a stream as they stand in the recording."""
+        return self._contents(topic).samples
+
+    def fault(self, topic: str) -> str | None:
+        """Return why a stream cannot be read, and know it no more, or None."""
+        try:
+            self._contents(topic)
+        except DyKnowError as error:
+            self._topics -= {topic}
+            return str(error)
+        return None
+
+    def _contents(self, topic: str) -> "_Contents":
         if topic not in self._recent:
-            self._recent[topic] = self._execution.samples(topic)
+            self._recent[topic] = _Contents(self._execution.contents(topic))
             if len(self._recent) > _KEPT:
                 self._recent.popitem(last=False)
         self._recent.move_to_end(topic)
         return self._recent[topic]
+
+
+class _Contents:
+    """What was recorded of one stream."""
+
+    def __init__(self, elements: Iterable[Element]) -> None:
+        self.samples: list[Sample[Any]] = []
+        self.heartbeats: list[Heartbeat] = []
+        for element in elements:
+            if isinstance(element, Sample):
+                self.samples.append(element)
+            else:
+                self.heartbeats.append(element)
 
 
 def _kept_promises(

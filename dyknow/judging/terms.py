@@ -1,17 +1,13 @@
 """Whether a recorded stream is one of those that its policy allows to make of its provider's.
 
-Definitions 4.5.9 to 4.5.11 of Heintz (2009) leave open which one is made. Written down naively
-they stand in `dyknow.streams.conformance`; here they are decided in one pass over the streams,
-sample by sample, so that every breach has its place:
-
-- a sample that the provider has not given, or not yet, or that was handed on before (4.5.9)
-- a sample that would have fitted in and was left out, or that was held back without need (4.5.10);
-  what could only be put in later than it was available does not count, since the definition
-  would have no maximal streams then
-- a constraint that is not kept (4.5.11)
+What is allowed stands in `dyknow.streams.conformance` and what that rests on: definitions 4.5.9 to
+4.5.11 of Heintz (2009), which leave open which of several streams is made. Here each sample is
+traced to the one it comes from, so that a breach is told by what is wrong with the sample, and
+what is wrong with one does not hide what is wrong with others. Beyond the definitions, a stream
+is in time: adapters hand on what a policy lets through as soon as that is certain.
 """
 
-from bisect import bisect_left, bisect_right, insort
+from bisect import bisect_right
 from collections.abc import Collection, Iterator, Sequence
 from itertools import pairwise
 from typing import Any
@@ -19,56 +15,17 @@ from typing import Any
 from dyknow.judging.declared import DeclaredStream
 from dyknow.judging.judgement import Breach, Definition
 from dyknow.judging.wording import deviation, short, times
+from dyknow.streams.approximation import extend
 from dyknow.streams.conformance import violations
-from dyknow.streams.policy import Approximation, Constraint, Policy, SampleEvery, Violation
+from dyknow.streams.maximality import omissions
+from dyknow.streams.policy import Approximation, Constraint, Violation
 from dyknow.streams.sample import Sample
 from dyknow.streams.values import are_equal
 from dyknow.time import TimePoint
 
-__all__ = ["TermBreaches", "extended", "policy_breaches"]
+__all__ = ["TermBreaches", "policy_breaches"]
 
 Samples = Sequence[Sample[Any]]
-
-
-def extended(samples: Samples, policy: Policy, until: TimePoint) -> list[Sample[Any]]:
-    """Return the samples that a stream may be made of, up to the time *until* (def. 4.5.10).
-
-    Without approximation these are the provider's. With `use most recent` there are, for each time
-    of the grid, the samples of exactly that valid time which come in time, or else an
-    approximation at the end of the maximal delay.
-    """
-    if policy.approximation is Approximation.NONE:
-        return [sample for sample in samples if sample.available_time <= until]
-    assert policy.period is not None  # the policy says so itself
-    assert policy.max_delay is not None
-    last = until if policy.end is None else min(until, policy.end)
-    made: list[Sample[Any]] = []
-    arrived: list[Sample[Any]] = []
-    arrivals = iter(samples)
-    head = next(arrivals, None)
-    for time in range(policy.first, last + 1, policy.period):
-        deadline = TimePoint(time + policy.max_delay)
-        while head is not None and head.available_time <= min(deadline, until):
-            insort(arrived, head, key=_valid_time)
-            head = next(arrivals, None)
-        made.extend(_at_time(arrived, TimePoint(time), deadline))
-    return sorted((each for each in made if each.available_time <= until), key=_available_time)
-
-
-def _at_time(
-    arrived: list[Sample[Any]], time: TimePoint, deadline: TimePoint
-) -> Iterator[Sample[Any]]:
-    """Yield what may stand for a time of the grid; forget what is older than the most recent."""
-    first = bisect_left(arrived, time, key=_valid_time)
-    if first < len(arrived) and arrived[first].valid_time == time:
-        del arrived[:first]
-        for sample in arrived:
-            if sample.valid_time != time:
-                return
-            yield sample
-    elif first > 0:
-        del arrived[: first - 1]
-        yield Sample(arrived[0].value, time, deadline)
 
 
 class TermBreaches:
@@ -80,7 +37,6 @@ class TermBreaches:
         provider: Those of its provider, alike.
         adapted: What the adapter of the policy makes of the provider's samples: as soon as it
             hands a sample on, the stream must have it.
-        published: What was published of the stream: a gap that was is no breach.
         until: The end of the execution.
     """
 
@@ -90,21 +46,20 @@ class TermBreaches:
         recorded: Samples,
         provider: Samples,
         adapted: Samples,
-        published: Collection[Violation],
         until: TimePoint,
     ) -> None:
-        self._missing = _missing_times(published)
         self._stream = stream
         self._policy = stream.policy
         self._recorded = recorded
+        self._provider = provider
         self._adapted = {sample.valid_time: sample for sample in adapted}
-        self._extended = extended(provider, stream.policy, until)
+        self._until = until
         self._by_valid_time: dict[TimePoint, list[Sample[Any]]] = {}
         self._by_available_time: dict[TimePoint, list[Sample[Any]]] = {}
-        for sample in self._extended:
+        for sample in extend(provider, stream.policy, until):
             self._by_valid_time.setdefault(sample.valid_time, []).append(sample)
             self._by_available_time.setdefault(sample.available_time, []).append(sample)
-        self._used: set[int] = set()
+        self._used: dict[int, TimePoint] = {}
 
     def all(self) -> list[Breach]:
         """Return all breaches in order of available time."""
@@ -119,17 +74,17 @@ class TermBreaches:
         unused = [each for each in same if id(each) not in self._used]
         in_time = [each for each in unused if each.available_time <= sample.available_time]
         if in_time:
-            yield from self._held_back(self._use(in_time[0]), sample)
+            yield from self._held_back(self._use(in_time[-1], sample), sample)
         elif unused:
-            expected, found = deviation(self._use(unused[0]), sample)
+            expected, found = deviation(self._use(unused[0], sample), sample)
             yield self._at(sample, Definition.SUBSTREAM, f"{expected} at the earliest", found)
         elif same:
             yield self._at(sample, Definition.SUBSTREAM, "each sample once", "the sample again")
         else:
             yield self._stranger(sample, candidates)
 
-    def _use(self, origin: Sample[Any]) -> Sample[Any]:
-        self._used.add(id(origin))
+    def _use(self, origin: Sample[Any], sample: Sample[Any]) -> Sample[Any]:
+        self._used[id(origin)] = sample.available_time
         return origin
 
     def _held_back(self, origin: Sample[Any], sample: Sample[Any]) -> Iterator[Breach]:
@@ -146,7 +101,7 @@ class TermBreaches:
         moved = [each for each in near if are_equal(each.value, sample.value)]
         for origin in (*candidates, *moved):
             if id(origin) not in self._used:
-                expected, found = deviation(self._use(origin), sample)
+                expected, found = deviation(self._use(origin, sample), sample)
                 return self._at(sample, Definition.SUBSTREAM, expected, found)
         wanted = f"a sample of '{self._stream.provider}'"
         if self._policy.approximation is Approximation.MOST_RECENT:
@@ -155,54 +110,57 @@ class TermBreaches:
 
     def _left_out(self) -> Iterator[Breach]:
         """Yield a breach for each sample that would fit into the stream and is not there."""
-        available_times = [sample.available_time for sample in self._recorded]
-        for sample in self._extended:
-            if id(sample) in self._used:
-                continue
-            at = bisect_right(available_times, sample.available_time)
-            before = self._recorded[at - 1] if at > 0 else None
-            after = self._recorded[at] if at < len(self._recorded) else None
-            if after is None and not self._has_been_due(sample):
-                continue
-            if self._fits(before, sample, after):
-                wanted = f"the sample {times(sample)}: {short(sample.value)}"
-                yield self._at(sample, Definition.TERM, wanted, "it left out")
+        repaired = self._repaired()
+        for sample in (*self._late_beginning(repaired), *self._omissions(repaired)):
+            wanted = f"the sample {times(sample)}: {short(sample.value)}"
+            yield self._at(sample, Definition.TERM, wanted, "it left out")
 
-    def _has_been_due(self, sample: Sample[Any]) -> bool:
-        """Return whether *sample* had to be handed on before the execution ended."""
-        if self._policy.period is None:
-            return True
-        adapted = self._adapted.get(sample.valid_time)
-        return adapted is not None and are_equal(adapted.value, sample.value)
+    def _repaired(self) -> list[Sample[Any]]:
+        """Return the stream as it would be if every sample were what it comes from."""
+        origins = (each for group in self._by_valid_time.values() for each in group)
+        used = [
+            Sample(each.value, each.valid_time, max(each.available_time, self._used[id(each)]))
+            for each in origins
+            if id(each) in self._used
+        ]
+        repaired: list[Sample[Any]] = []
+        for sample in sorted(used, key=lambda each: each.available_time):
+            if repaired and sample.available_time <= repaired[-1].available_time:
+                sample.available_time = TimePoint(repaired[-1].available_time + 1)
+            repaired.append(sample)
+        return repaired
 
-    def _fits(
-        self, before: Sample[Any] | None, sample: Sample[Any], after: Sample[Any] | None
-    ) -> bool:
-        """Return whether a stream keeps its policy no less with *sample* between two others."""
-        if violations([sample], self._policy):
-            return False
-        follows = before is None or self._may_follow(before, sample)
-        precedes = after is None or self._may_follow(sample, after)
-        if before is None or after is None or self._may_follow(before, after):
-            return follows and precedes
-        is_between = before.valid_time < sample.valid_time < after.valid_time
-        return is_between and (follows or precedes or self._is_on_grid(before, sample))
+    def _late_beginning(self, repaired: Samples) -> Iterator[Sample[Any]]:
+        """Yield where a sampled stream has to begin, if it begins later.
 
-    def _is_on_grid(self, before: Sample[Any], sample: Sample[Any]) -> bool:
-        """Return whether whole periods lie between two samples of a sampled stream."""
-        match self._policy.change:
-            case SampleEvery(period, deviation=0):
-                return (sample.valid_time - before.valid_time) % period == 0
-            case _:
-                return False
+        By the definition it might begin anywhere; adapters begin as soon as there is a sample.
+        """
+        first = next(iter(self._adapted.values()), None)
+        if self._policy.period is None or first is None:
+            return
+        if not repaired or repaired[0].valid_time > first.valid_time:
+            yield first
 
-    def _may_follow(self, before: Sample[Any], sample: Sample[Any]) -> bool:
-        kept = Policy(change=self._policy.change, order=self._policy.order)
-        if not violations([before, sample], kept):
-            return True
-        at = bisect_right(self._missing, before.valid_time)
-        is_published = at < len(self._missing) and self._missing[at] < sample.valid_time
-        return is_published and self._is_on_grid(before, sample)
+    def _omissions(self, repaired: Samples) -> Iterator[Sample[Any]]:
+        """Yield what else could be added."""
+        is_sampled = self._policy.period is not None
+        is_sound = all(
+            each.constraint is Constraint.CHANGE and is_sampled
+            for each in violations(repaired, self._policy)
+        )
+        if is_sound and (repaired or not is_sampled):
+            beginning = {id(each) for each in self._late_beginning(repaired)}
+            for sample in omissions(repaired, self._provider, self._policy, self._until):
+                if id(sample) not in beginning and self._has_been_due(sample, repaired):
+                    yield sample
+
+    def _has_been_due(self, sample: Sample[Any], repaired: Samples) -> bool:
+        """Return whether *sample* had to be there when the execution ended.
+
+        A sampled stream may still have been waiting for what comes before it.
+        """
+        is_last = not repaired or sample.valid_time > repaired[-1].valid_time
+        return not is_last or self._policy.period is None or sample.valid_time in self._adapted
 
     def _at(
         self, sample: Sample[Any], definition: Definition, expected: str, found: str
@@ -217,7 +175,7 @@ def policy_breaches(
 
     That samples are missing under `sample every` is no breach if it was published.
     """
-    missing = _missing_times(published)
+    missing = sorted(each.valid_time for each in published if each.constraint is Constraint.CHANGE)
     times_before = {
         sample.available_time: before.valid_time for before, sample in pairwise(recorded)
     }
@@ -236,16 +194,3 @@ def policy_breaches(
             violation.valid_time,
             violation.noticed_at,
         )
-
-
-def _missing_times(published: Collection[Violation]) -> list[TimePoint]:
-    """Return the valid times of which it was published that there is no sample, in order."""
-    return sorted(each.valid_time for each in published if each.constraint is Constraint.CHANGE)
-
-
-def _valid_time(sample: Sample[Any]) -> TimePoint:
-    return sample.valid_time
-
-
-def _available_time(sample: Sample[Any]) -> TimePoint:
-    return sample.available_time

@@ -1,16 +1,15 @@
 """Small networks that are run by the kernel and remembered as a whole, for judging."""
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import Any
 
 from dyknow.judging.declared import DeclaredNetwork, DeclaredProcess, DeclaredStream
 from dyknow.judging.execution import Interpretation
 from dyknow.runtime.generators import Label
 from dyknow.runtime.kernel import Kernel
-from dyknow.streams.policy import Policy, Violation
+from dyknow.runtime.subscriptions import StreamViolation
+from dyknow.streams.policy import Policy
 from dyknow.streams.process import ComputationalUnit, Element
-from dyknow.streams.sample import Sample
 from dyknow.time import TimePoint
 from tests.support.streams import GivenSource
 
@@ -24,12 +23,12 @@ class SmallNetwork:
     """Sources with given samples, units, and outputs, in the order of their declaration.
 
     Attributes:
-        sources: Label to samples.
+        sources: Label to samples and heartbeats.
         units: Label to what makes the unit, and its inputs.
         outputs: Name to the stream.
     """
 
-    sources: Mapping[str, Sequence[Sample[Any]]] = field(default_factory=dict)
+    sources: Mapping[str, Sequence[Element]] = field(default_factory=dict)
     units: Mapping[str, tuple[Callable[[], ComputationalUnit], Sequence[Term]]] = field(
         default_factory=dict
     )
@@ -52,49 +51,23 @@ class SmallNetwork:
 
     def run(self, until: TimePoint) -> Interpretation:
         """Run the network and return all its streams."""
-        kernel, streams, violations = Kernel(), {}, []
+        kernel, violations = Kernel(), list[StreamViolation]()
+        streams: dict[str, list[Element]] = {}
         kernel.subscribe_violations(violations.append)
-        for name, samples in self.sources.items():
-            kernel.add_source(Label(name), GivenSource(list(samples)))
+        for name, elements in self.sources.items():
+            kernel.add_source(Label(name), GivenSource(elements))
         for name, (make, terms) in self.units.items():
-            received: list[list[Sample[Any]]] = [[] for _ in terms]
             inputs = [(Label(provider), policy) for provider, policy in terms]
-            kernel.add_unit(Label(name), _Watched(make(), received), inputs)
-            for number, samples in enumerate(received, start=1):
-                streams[f"{name}/{number}"] = samples
-        for label in (*self.sources, *self.units):
-            streams[label] = []
-            kernel.subscribe(Label(label), streams[label].append)
+            kernel.add_unit(Label(name), make(), inputs)
+        for label in kernel.labels:
+            kept = streams.setdefault(label, []).append
+            kernel.subscribe(label, kept, beat=kept)
+        for proxy in kernel.streams:
+            if proxy.number:
+                kept = streams.setdefault(f"{proxy.receiver}/{proxy.number}", []).append
+                proxy.tap(kept, kept)
         for name, (provider, policy) in self.outputs.items():
-            streams[f"output/{name}"] = []
-            kernel.subscribe(Label(provider), streams[f"output/{name}"].append, policy)
+            kept = streams.setdefault(f"output/{name}", []).append
+            kernel.subscribe(Label(provider), kept, policy, beat=kept)
         kernel.run(until)
         return Interpretation(kernel.now, streams, tuple(self.outputs), violations)
-
-
-class _Watched:
-    """A unit whose inputs are remembered."""
-
-    def __init__(self, unit: ComputationalUnit, received: list[list[Sample[Any]]]) -> None:
-        self._unit = unit
-        self._received = received
-
-    def push(self, now: TimePoint, inputs: tuple[Sample[Any], ...]) -> Iterable[Element]:
-        """Remember the new samples and let the unit have them."""
-        for samples, sample in zip(self._received, inputs, strict=True):
-            if sample.available_time == now:
-                samples.append(sample)
-        return self._unit.push(now, inputs)
-
-    def advance(self, now: TimePoint) -> Iterable[Element]:
-        """Let the unit know the time."""
-        return self._unit.advance(now)
-
-    def due(self) -> TimePoint | None:
-        """Return when the unit is due."""
-        return self._unit.due()
-
-    def take_violations(self) -> list[Violation]:
-        """Return what the unit has noticed."""
-        take = getattr(self._unit, "take_violations", list)
-        return take()

@@ -4,11 +4,11 @@ from collections.abc import Iterable
 from typing import Any
 
 from dyknow.streams.process import Reactive
-from dyknow.streams.sample import NO_SAMPLE, Sample
+from dyknow.streams.sample import NO_SAMPLE, Heartbeat, Sample
 from dyknow.time import TimePoint
 from tests.support.streams import ms
 
-__all__ = ["Counting", "Late", "Pairs", "Ticking"]
+__all__ = ["Counting", "Hearing", "Late", "Pairs", "Ticking"]
 
 
 class Pairs(Reactive):
@@ -43,6 +43,18 @@ class Late(Reactive):
         """Emit the sample, to be available later."""
         (sample,) = inputs
         yield Sample(sample.value, sample.valid_time, TimePoint(now + ms(35)))
+
+
+class Hearing(Reactive):
+    """Emits how far its input is complete, whenever a heartbeat says so."""
+
+    def push(self, now: TimePoint, inputs: tuple[Sample[Any], ...]) -> Iterable[Sample[Any]]:
+        """Emit nothing."""
+        return ()
+
+    def beat(self, now: TimePoint, at: int, heartbeat: Heartbeat) -> Iterable[Sample[Any]]:
+        """Emit until when the input is complete."""
+        yield Sample((at, heartbeat.until), now, now)
 
 
 class Ticking:
