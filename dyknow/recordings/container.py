@@ -32,8 +32,8 @@ __all__ = [
 MAGIC = b"\x89MCAP0\r\n"
 """The beginning and the end of each file."""
 
-RawMessage = tuple[int, int, int, bytes]
-"""Log time, number of the channel, sequence number, content."""
+RawMessage = tuple[int, int, int, bytes, int]
+"""Log time, number of the channel, sequence number, content, publish time."""
 
 _RECORD = Struct("<BQ")
 _CHUNK = Struct("<QQQII")
@@ -135,9 +135,9 @@ def contents_of(data: bytes) -> Contents:
     at, end = 0, len(data)
     while at < end:
         if data[at] == Opcode.MESSAGE and at + skip <= end:
-            _, length, channel, sequence, log_time, _ = unpack(data, at)
+            _, length, channel, sequence, log_time, publish_time = unpack(data, at)
             begin, at = at + skip, at + _RECORD.size + length
-            messages.append((log_time, channel, sequence, data[begin:at]))
+            messages.append((log_time, channel, sequence, data[begin:at], publish_time))
         else:
             at = _declared(data, at, contents)
     if at > end:

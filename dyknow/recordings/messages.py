@@ -17,7 +17,7 @@ from dyknow.streams.process import Element
 from dyknow.streams.sample import NO_VALUE, Heartbeat, Sample
 from dyknow.time import TimePoint
 
-__all__ = ["ReadMessage", "Reference", "available_time_of", "message_reader"]
+__all__ = ["ReadMessage", "Reference", "available_time_of", "message_reader", "times_of"]
 
 
 @dataclass(slots=True)
@@ -67,3 +67,9 @@ def message_reader(description: Description, codecs: Mapping[str, Codec]) -> Rea
 def available_time_of(data: bytes) -> TimePoint:
     """Return the available time of a message, without reading its value."""
     return TimePoint(HEAD.unpack_from(data)[3])
+
+
+def times_of(data: bytes) -> tuple[TimePoint, TimePoint]:
+    """Return the valid time and the available time of a message, without reading its value."""
+    _, valid_time, _, available_time = HEAD.unpack_from(data)
+    return TimePoint(valid_time), TimePoint(available_time)

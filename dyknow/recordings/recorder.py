@@ -1,12 +1,13 @@
 """Writing what flows in a network to a file, while it flows."""
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from pathlib import Path
 from types import TracebackType
 from typing import Any, Self
 
 from google.protobuf.message import Message
 
+from dyknow.recordings.attaching import Attachment, DeclaredNetwork
 from dyknow.recordings.channels import ChannelRole, Description
 from dyknow.recordings.codecs import Codec
 from dyknow.recordings.formats import FORMAT, FORMAT_RECORD, TEXTS_RECORD, sealed_texts
@@ -16,6 +17,8 @@ from dyknow.recordings.taps import GeneratorTap, StreamTap, ViewTap
 from dyknow.recordings.topics import Topic
 from dyknow.recordings.violations import VIOLATIONS, layout_of_violations, sample_from_violation
 from dyknow.recordings.writing import CHUNK_SIZE, FileWriter
+from dyknow.runtime.generators import Label
+from dyknow.runtime.kernel import Kernel
 from dyknow.runtime.subscriptions import StreamViolation
 from dyknow.streams.sample import Sample
 
@@ -54,6 +57,7 @@ class Recorder:
         self._generators: dict[str, GeneratorTap] = {}
         self._topics: dict[str, Topic] = {}
         self._names: set[str] = set()
+        self._attachments: list[Attachment] = []
         self._violations: GeneratorTap | None = None
         self._writer.add_metadata(FORMAT_RECORD, sealed_texts({"format": FORMAT}))
         self.annotate(metadata)
@@ -148,6 +152,38 @@ class Recorder:
             self._violations = GeneratorTap(self._topic(VIOLATIONS, description, layout))
         self._violations(sample_from_violation(violation))
 
+    def attach(
+        self,
+        network: DeclaredNetwork | Kernel,
+        labels: Collection[str] | None = None,
+        without: Collection[str] = (),
+    ) -> Attachment:
+        """Record the streams of a network from now on, and its violations.
+
+        Recorded are the samples and heartbeats of each stream generator, those of each input of
+        a process, as RECEIVER/NUMBER, and those of each declared output, as `output/NAME`.
+
+        Args:
+            network: The network, or its kernel alone, which does not know outputs and policies
+                as they were written.
+            labels: The generators whose streams are wanted; all if None.
+            without: Those that are not.
+
+        Raises:
+            NoSuchLabelError: There is no generator of one of these names now.
+        """
+        kernel = network if isinstance(network, Kernel) else network.kernel
+        for label in (*(labels or ()), *without):
+            kernel.generator(Label(label))
+        chosen, left_out = None if labels is None else set(labels), set(without)
+
+        def is_wanted(label: str) -> bool:
+            return (chosen is None or label in chosen) and label not in left_out
+
+        attachment = Attachment(self, network, is_wanted)
+        self._attachments.append(attachment)
+        return attachment
+
     def close(self) -> None:
         """Write what is still open, and give the file its name."""
         self._settle()
@@ -158,6 +194,8 @@ class Recorder:
         self._writer.finish()
 
     def _settle(self) -> None:
+        for attachment in self._attachments:
+            attachment.end()
         for generator in self._generators.values():
             generator.settle()
         for topic in self._topics.values():

@@ -1,11 +1,11 @@
 """Reading a recording: which streams it has, and their samples, as they were."""
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
 from types import TracebackType
-from typing import Any, Self
+from typing import Any, NamedTuple, Self
 
 from dyknow.errors import ValueNotAvailableError
 from dyknow.recordings.channels import ChannelRole, Description
@@ -17,6 +17,7 @@ from dyknow.recordings.errors import (
     MissingStreamError,
 )
 from dyknow.recordings.index import Damage
+from dyknow.recordings.layout import Layout
 from dyknow.recordings.messages import (
     ReadMessage,
     Reference,
@@ -31,7 +32,13 @@ from dyknow.streams.process import Element
 from dyknow.streams.sample import Sample
 from dyknow.time import TimePoint
 
-__all__ = ["RecordedSource", "RecordedStream", "Recording", "open_recording"]
+__all__ = [
+    "RecordedMessage",
+    "RecordedSource",
+    "RecordedStream",
+    "Recording",
+    "open_recording",
+]
 
 
 @dataclass(frozen=True, slots=True)
@@ -57,6 +64,20 @@ class RecordedStream:
     count: int
     first: TimePoint | None
     last: TimePoint | None
+
+
+class RecordedMessage(NamedTuple):
+    """A message as it was written.
+
+    Attributes:
+        topic: Its topic.
+        layout: How its value is laid out; None if it refers to one of the provider.
+        data: Its bytes.
+    """
+
+    topic: str
+    layout: Layout | None
+    data: bytes
 
 
 def open_recording(path: Path | str, codecs: Sequence[Codec] = ()) -> "Recording":
@@ -119,6 +140,15 @@ class Recording:
         """What has been recorded, by topic, in the order in which it was first written."""
         return {topic: self._stream(topic, numbers) for topic, numbers in self._channels.items()}
 
+    @property
+    def topics(self) -> frozenset[str]:
+        """The topics of all streams that are not for viewers alone."""
+        return frozenset(
+            topic
+            for topic, numbers in self._channels.items()
+            if self._descriptions[numbers[0]].role is not ChannelRole.VIEW
+        )
+
     def samples(self, topic: str) -> Iterator[Sample[Any]]:
         """Yield the samples of one topic in order of available time; read as they are asked for.
 
@@ -176,6 +206,16 @@ class Recording:
             for sample in self.samples(VIOLATIONS):
                 yield violation_from_sample(sample, self._find_if_known)
 
+    def messages(self, topics: Collection[str]) -> Iterator[RecordedMessage]:
+        """Yield the messages of some topics as they were written, in order of available time."""
+        origin = {
+            number: (topic, self._descriptions[number].layout)
+            for topic in topics
+            for number in self._known(topic)
+        }
+        for _, number, _, data, _ in self._file.messages(origin):
+            yield RecordedMessage(*origin[number], data)
+
     def _merged(
         self,
         topic_by_channel: Mapping[int, str],
@@ -192,7 +232,7 @@ class Recording:
             for provider, kept in origins.items()
             for number in self._known(provider)
         }
-        for _, number, _, data in self._file.messages({*readers, *origins_by_channel}):
+        for _, number, _, data, _ in self._file.messages({*readers, *origins_by_channel}):
             if number in origins_by_channel:
                 kept, read = origins_by_channel[number]
                 kept.keep(data, read)
@@ -213,7 +253,7 @@ class Recording:
     def _find(self, topic: str, available_time: TimePoint) -> Sample[Any] | None:
         """Return the sample of a topic that became available at a time, wherever it is."""
         numbers = self._known(topic)
-        for _, number, _, data in self._file.messages_at(numbers, max(0, available_time)):
+        for _, number, _, data, _ in self._file.messages_at(numbers, max(0, available_time)):
             if available_time_of(data) == available_time:
                 element = self._reader(number)(data)
                 if isinstance(element, Reference):

@@ -17,6 +17,7 @@ from dyknow.time import TimePoint
 __all__ = ["Topic"]
 
 _NONE_YET = 0
+_LARGEST_SEQUENCE = 0xFFFF_FFFF
 
 
 class Topic:
@@ -78,7 +79,7 @@ class Topic:
         self, channel: int, data: bytes, available_time: TimePoint, valid_time: TimePoint
     ) -> None:
         """Write a message; its container knows no times before 0, the message itself does."""
-        self._count += 1
+        self._count = self._count + 1 & _LARGEST_SEQUENCE
         log_time = available_time if available_time > 0 else 0
         publish_time = valid_time if valid_time > 0 else 0
         self._writer.add_message(channel, log_time, data, publish_time, self._count)
