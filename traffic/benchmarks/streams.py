@@ -37,6 +37,7 @@ from traffic.benchmarks.workloads import (
     Steady,
     Workload,
     ignore,
+    many_deadlines,
     many_policies,
     many_sources,
     many_streams,
@@ -79,11 +80,16 @@ _BY_SOURCES = Published(
 
 _SHARED = "one policy for all"
 _OWN = "a policy of its own for each"
+_DEADLINES = "and a deadline of its own"
 _STREAMS: Mapping[str, Callable[[int], Workload]] = {
     _SHARED: lambda n: Workload(many_streams(n)),
     _OWN: lambda n: Workload(many_policies(n)),
+    _DEADLINES: lambda n: Workload(many_deadlines(n)),
 }
-"""The thesis has the first; streams under equal policies share an adapter, others cannot."""
+"""The thesis has the first; streams under equal policies share an adapter, others cannot.
+
+With a maximal delay a stream also has an alarm for each sample, for it must notice missing ones.
+"""
 
 
 @dataclass(frozen=True, slots=True)

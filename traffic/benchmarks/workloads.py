@@ -23,6 +23,7 @@ __all__ = [
     "Steady",
     "Workload",
     "ignore",
+    "many_deadlines",
     "many_policies",
     "many_sources",
     "many_streams",
@@ -58,17 +59,17 @@ class Copy(Reactive):
 
 def many_streams(n: int) -> str:
     """Return the network of figure 5.6: *n* streams from one source."""
-    streams = [f"stream strm{i} = gen with sample every 100" for i in range(1, n + 1)]
-    return "\n".join(["source int src1", "strmgen gen = src1", *streams]) + "\n"
+    return _each(n, lambda _: "sample every 100")
 
 
 def many_policies(n: int) -> str:
     """Return the network of figure 5.6 with a different policy for each stream."""
-    streams = [
-        f"stream strm{i} = gen with sample every 100, max delay {1000 + i}"
-        for i in range(1, n + 1)
-    ]
-    return "\n".join(["source int src1", "strmgen gen = src1", *streams]) + "\n"
+    return _each(n, lambda i: f"sample every 100, to {1_000_000 + i}")
+
+
+def many_deadlines(n: int) -> str:
+    """Return the network of figure 5.6 with a different delay for each stream."""
+    return _each(n, lambda i: f"sample every 100, max delay {1_000 + i}")
 
 
 def many_sources(n: int, m: int) -> str:
@@ -131,6 +132,12 @@ class Workload:
 
 def ignore(_sample: Sample[Any]) -> None:
     """Take a sample, as a client does that has nothing to do with it."""
+
+
+def _each(n: int, policy_of: Callable[[int], str]) -> str:
+    """Return *n* streams from one source, under the policies that *policy_of* gives."""
+    streams = [f"stream strm{i} = gen with {policy_of(i)}" for i in range(1, n + 1)]
+    return "\n".join(["source int src1", "strmgen gen = src1", *streams]) + "\n"
 
 
 def _streams(m: int, n: int) -> list[str]:

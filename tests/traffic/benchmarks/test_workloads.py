@@ -6,6 +6,7 @@ from traffic.benchmarks.workloads import (
     Steady,
     Workload,
     ignore,
+    many_deadlines,
     many_policies,
     many_sources,
     many_streams,
@@ -43,6 +44,7 @@ def test_figure_5_10():
     [
         (many_streams(4), 1),
         (many_policies(4), 1),
+        (many_deadlines(4), 1),
         (many_sources(3, 5), 3),
         (many_units(2, 6), 1),
     ],
