@@ -31,8 +31,8 @@ def _change(offered: Policy, wanted: Policy) -> str | None:
     for period in offered.change.periods():
         if not _is_served(wanted.change, period, offered.change.deviation):
             return (
-                f"the process gives {_sampling(period, offered.change)}, out of which "
-                f"{_sampling(wanted.change.period, wanted.change)} cannot be picked"
+                f"the process gives {_sampling(period, offered.change)}, "
+                f"{_sampling(wanted.change.period, wanted.change)} cannot be picked out of it"
             )
     return None
 

@@ -74,8 +74,10 @@ class Sampler:
     place on it. With a maximal delay, a sample is waited for until that delay has passed, and
     later ones that have arrived already are held back meanwhile; without it, the first sample
     beyond the expected one proves that it is missing. A heartbeat proves it too, except the last
-    one: after the end of a stream nothing is missing. A gap is published and the stream goes on
-    after it; a sample that comes after its place has been given up or taken is published as well.
+    one: after the end of a stream nothing is missing.
+
+    The stream goes on after a gap. It is published if it is longer than the longest period, and
+    so is a sample that comes after its place has been given up or taken.
 
     Attributes:
         period: The period in force, a multiple of the policy's.
@@ -84,6 +86,7 @@ class Sampler:
     __slots__ = (
         "_change",
         "_end",
+        "_gap_after",
         "_given_up",
         "_heard",
         "_held",
@@ -93,6 +96,7 @@ class Sampler:
         "_policy",
         "_seen",
         "_step",
+        "_unreported",
         "_width",
         "period",
     )
@@ -108,7 +112,8 @@ class Sampler:
         # The next sample must be valid between `_opens` and `_opens + _width`.
         self._opens = _NOT_BEGUN
         self._width = 2 * policy.change.deviation
-        self._given_up = self._heard = self._seen = _NOT_BEGUN
+        self._given_up = self._heard = self._seen = self._gap_after = _NOT_BEGUN
+        self._unreported = 0
         self._take_on(policy.change.period)
 
     @property
@@ -260,10 +265,20 @@ class Sampler:
         return max(0, (known - self._opens - self._width) // self.period + 1)
 
     def _give_up(self, count: int, now: TimePoint) -> None:
-        if count:
-            self._out.report_missing(self._expected, count, self._change, now)
-            self._opens += count * self.period
-            self._given_up = self._opens + self._width - self.period
+        """Wait no longer for the next samples; publish them if the longest period has passed."""
+        if not count:
+            return
+        last = self._opens - self._step
+        if self._given_up < last:
+            self._gap_after, self._unreported = last, 0
+        self._unreported += count
+        self._opens += count * self.period
+        self._given_up = self._opens + self._width - self.period
+        longest = self._gap_after + self._change.longest_period + self._change.deviation
+        if self._given_up >= longest:
+            first = self._expected - self._unreported * self.period
+            self._out.report_missing(first, self._unreported, self._change, now)
+            self._unreported = 0
 
     def _release(self, now: TimePoint) -> list[Sample[Any]]:
         """Take the held samples that are next, or that nobody waits for any more, and yield."""

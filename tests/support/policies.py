@@ -30,6 +30,7 @@ __all__ = [
     "heartbeats",
     "lengthened",
     "policies",
+    "samplings",
     "streams",
 ]
 
@@ -48,7 +49,8 @@ def streams(draw: st.DrawFn, size: int = 12) -> list[Sample[Any]]:
 
 
 @st.composite
-def _samplings(draw: st.DrawFn) -> SampleEvery:
+def samplings(draw: st.DrawFn) -> SampleEvery:
+    """Draw `sample every`, with and without deviation and a longest period."""
     period = draw(_PERIODS)
     deviation = draw(st.sampled_from([0, 0, 3, 8]).map(ms).filter(lambda one: one < period))
     longest = draw(st.sampled_from([None, None, 2, 3]))
@@ -76,7 +78,7 @@ def policies(draw: st.DrawFn) -> Policy:
     start = draw(st.none() | _TIMES)
     length = draw(st.none() | _TIMES)
     return Policy(
-        change=draw(st.sampled_from([ANY_UPDATE, ANY_CHANGE]) | _samplings()),
+        change=draw(st.sampled_from([ANY_UPDATE, ANY_CHANGE]) | samplings()),
         max_delay=draw(st.none() | _TIMES),
         start=start,
         end=None if length is None else TimePoint((start or 0) + length),
@@ -90,7 +92,7 @@ def approximating_policies(draw: st.DrawFn) -> Policy:
     start = draw(_TIMES)
     return Policy(
         approximation=Approximation.MOST_RECENT,
-        change=draw(_samplings().map(lambda one: replace(one, deviation=Duration(0)))),
+        change=draw(samplings().map(lambda one: replace(one, deviation=Duration(0)))),
         max_delay=draw(_TIMES),
         start=start,
         end=draw(st.none() | _TIMES.map(lambda length: TimePoint(start + length))),

@@ -18,6 +18,7 @@ from dyknow.streams.stream import (
     previous,
     valid_before,
 )
+from tests.support.policies import streams
 from tests.support.streams import ms, stream, text
 
 F1 = stream("1:v1 2:v2@3 5:v3@4")
@@ -80,6 +81,52 @@ def test_section_7_8_1_the_most_recent_value_for_a_state():
     speed = stream("1000:s1@1010 1100:s2@1110 1200:s3@1280 1300:s4@1320")
 
     assert text([most_recent_at(speed, ms(1050), ms(1130))]) == "1000:s1@1010"
+
+
+def test_what_is_before_no_sample_is_no_sample():
+    """Definition 4.3.12 has an answer for the absence of a sample too."""
+    assert previous(F1, NO_SAMPLE) is NO_SAMPLE
+    assert not is_fluent_stream([NO_SAMPLE])
+
+
+def test_samples_that_become_available_together_are_joined_once():
+    """At one time there is one element of the join, whatever the number of new samples."""
+    joined = join(stream("0:a 10:b"), stream("10:c"), [])
+
+    assert [sample.available_time for sample in joined] == [ms(0), ms(10)]
+    assert [text(joined[1].value[:2]), joined[1].value[2]] == ["10:b 10:c", NO_SAMPLE]
+    assert join() == []
+
+
+@settings(derandomize=True, deadline=None, max_examples=100)
+@given(st.lists(streams(), max_size=4))
+def test_the_join_is_that_of_the_definition(given_streams):
+    """In one pass, what definition 4.3.16 says of each time by itself."""
+    expected = [
+        Sample(tuple(last_available(one, time) for one in given_streams), time, time)
+        for time in sorted(available_times(*given_streams))
+    ]
+
+    assert join(*given_streams) == expected
+
+
+@settings(derandomize=True, deadline=None, max_examples=100)
+@given(streams(), st.integers(0, 22))
+def test_what_is_available_is_found_as_the_definitions_say(given_stream, time):
+    """Definitions 4.3.7, 4.3.8 and 4.3.12 as sets, without regard to order."""
+    now = ms(10 * time)
+
+    there = [sample for sample in given_stream if sample.available_time <= now]
+
+    assert available(given_stream, now) == there
+    assert last_available(given_stream, now) is _latest(there)
+    for sample in given_stream:
+        earlier = [s for s in given_stream if s.available_time < sample.available_time]
+        assert previous(given_stream, sample) is _latest(earlier)
+
+
+def _latest(samples):
+    return max(samples, key=lambda sample: sample.available_time, default=NO_SAMPLE)
 
 
 @settings(derandomize=True, deadline=None, max_examples=100)
