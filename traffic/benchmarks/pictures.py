@@ -8,7 +8,7 @@ import numpy as np
 from matplotlib import style
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from matplotlib.ticker import FuncFormatter
+from matplotlib.ticker import FuncFormatter, MaxNLocator
 
 from traffic.benchmarks.results import BenchmarkResult, Experiment, Published, Series
 
@@ -76,27 +76,27 @@ def _draw_published(panel: Axes, experiment: Experiment, published: Published) -
 def _draw_measured(panel: Axes, experiment: Experiment, result: BenchmarkResult) -> None:
     machine = result.machine
     for colour, series in zip(_COLOURS, experiment.series, strict=False):
-        _draw_series(panel, series, colour)
-    lines = [series.line for series in experiment.series if series.line is not None]
-    fit = f"{lines[0].slope:.3g} {experiment.unit} for one more" if lines else ""
+        _draw_series(panel, series, colour, experiment.unit)
     where = f"{machine.processor}, Python {machine.versions['python']}"
-    panel.set_title("\n".join(filter(None, [f"here: {where}", fit])), fontsize=8)
+    panel.set_title(f"here: {where}", fontsize=8)
     panel.set_ylabel(f"{experiment.y}, {experiment.unit}")
-    if len(experiment.series) > 1:
-        panel.legend(frameon=False, fontsize=8)
+    if len(experiment.series) > 1 or experiment.series[0].line is not None:
+        panel.legend(frameon=False, fontsize=8, loc="upper left")
 
 
-def _draw_series(panel: Axes, series: Series, colour: str) -> None:
+def _draw_series(panel: Axes, series: Series, colour: str, unit: str) -> None:
     x = np.array([point.x for point in series.points])
     median = [point.y.median for point in series.points]
     low = [point.y.low for point in series.points]
     high = [point.y.high for point in series.points]
     panel.fill_between(x, low, high, color=colour, alpha=0.18, linewidth=0)
     mark = "o-" if len(x) <= _FEW else "-"
-    panel.plot(x, median, mark, color=colour, markersize=4, linewidth=1.2, label=series.name)
+    label = series.name
     if series.line is not None:
+        label = f"{label}: {series.line.slope:.2g} {unit} for one more"
         fitted = [series.line.at(place) for place in x]
         panel.plot(x, fitted, "--", color="#1b2330", linewidth=0.8)
+    panel.plot(x, median, mark, color=colour, markersize=4, linewidth=1.2, label=label)
 
 
 def _dress(panel: Axes, experiment: Experiment) -> None:
@@ -109,8 +109,9 @@ def _dress(panel: Axes, experiment: Experiment) -> None:
             return
     else:
         panel.set_xlim(left=0)
+        panel.xaxis.set_major_locator(MaxNLocator(integer=True))
     panel.set_ylim(bottom=0, top=_room_above(panel))
 
 
 def _room_above(panel: Axes) -> float:
-    return float(panel.get_ylim()[1]) * 1.08
+    return float(panel.get_ylim()[1]) * 1.28
