@@ -24,7 +24,6 @@ __all__ = [
     "bytes_from_array",
     "element_type",
     "packing_of",
-    "packing_of_text",
 ]
 
 Array = npt.NDArray[Any]
@@ -95,11 +94,6 @@ def element_type(dtype: np.dtype[Any]) -> str:
 def packing_of(dtype: np.dtype[Any]) -> Packing:
     """Return how elements of type *dtype* are written."""
     return _PACKING_BY_TYPE.get(f"{dtype.kind}{dtype.itemsize}", RAW)
-
-
-def packing_of_text(element: str) -> Packing:
-    """Return how elements of the type that `element_type` calls *element* are written."""
-    return packing_of(np.dtype(element))
 
 
 def bytes_from_array(array: Array | np.generic, packing: Packing) -> bytes:

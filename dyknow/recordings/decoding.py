@@ -7,13 +7,14 @@ from typing import Any
 import numpy as np
 
 from dyknow.recordings.codecs import Codec
-from dyknow.recordings.columns import BYTE_STRINGS, array_from_bytes, packing_of_text
+from dyknow.recordings.columns import BYTE_STRINGS, array_from_bytes
 from dyknow.recordings.layout import Field, Kind, Layout, Shape
 from dyknow.recordings.places import (
     FIRST_COLUMN,
     FIRST_OF_VALUE,
     has_numbers,
     is_repeated_as_it_is,
+    packing_of_shape,
     places_of,
 )
 from dyknow.recordings.wire import DOUBLE, WORD, parts, varints
@@ -216,7 +217,7 @@ def _elements(shape: Shape, codecs: Codecs) -> ReadElements:
     """Return what reads the elements of an array."""
     element = str(shape.detail[0])
     if has_numbers(shape):
-        dtype, packing = np.dtype(element), packing_of_text(element)
+        dtype, packing = np.dtype(element), packing_of_shape(shape)
         return lambda data, begin, end, lengths: array_from_bytes(
             data[begin:end], packing, dtype, lengths
         )

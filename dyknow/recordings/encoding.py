@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from dyknow.recordings.codecs import Codec, codec_of
-from dyknow.recordings.columns import BYTE_STRINGS, bytes_from_array, packing_of_text
+from dyknow.recordings.columns import BYTE_STRINGS, bytes_from_array
 from dyknow.recordings.layout import (
     KIND_BY_TYPE,
     Field,
@@ -25,6 +25,7 @@ from dyknow.recordings.places import (
     has_numbers,
     is_number,
     is_repeated_as_it_is,
+    packing_of_shape,
     places_of,
 )
 from dyknow.recordings.wire import (
@@ -118,7 +119,7 @@ def _framed(number: int, shape: Shape, codecs: Codecs) -> Write:
         case Kind.NUMBER:
             return _prefixed(tag(number, FIXED_64), DOUBLE.pack)
         case Kind.SCALAR if is_number(shape):
-            packing = packing_of_text(str(shape.detail[0]))
+            packing = packing_of_shape(shape)
             mark = tag(number, packing.wire_type)
             return _prefixed(mark, lambda value: bytes_from_array(value, packing))
         case Kind.SCALAR:
@@ -233,9 +234,8 @@ def _array(shape: Shape, codecs: Codecs) -> Write:
 
 def _elements(number: int, shape: Shape, codecs: Codecs) -> Write:
     """Return what writes the elements of an array, or a numpy scalar, as field *number*."""
-    element = str(shape.detail[0])
     if has_numbers(shape):
-        packing = packing_of_text(element)
+        packing = packing_of_shape(shape)
         return _delimited(number, lambda array: bytes_from_array(array, packing))
     if shape.fields:
         write = _items(1, shape.fields[0].layout, codecs)

@@ -9,7 +9,9 @@ import re
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
-from dyknow.recordings.columns import BYTE_STRINGS, OBJECTS, STRINGS, packing_of_text
+import numpy as np
+
+from dyknow.recordings.columns import BYTE_STRINGS, OBJECTS, RAW, STRINGS, Packing, packing_of
 from dyknow.recordings.layout import Field, Kind, Layout, Shape
 
 __all__ = [
@@ -20,6 +22,7 @@ __all__ = [
     "identifier",
     "is_number",
     "is_repeated_as_it_is",
+    "packing_of_shape",
     "places_of",
 ]
 
@@ -80,7 +83,17 @@ def has_numbers(shape: Shape) -> bool:
 
 def is_number(shape: Shape) -> bool:
     """Return whether a numpy scalar of this shape is a number that a field can show."""
-    return has_numbers(shape) and packing_of_text(str(shape.detail[0])).shows_one
+    return has_numbers(shape) and packing_of_shape(shape).shows_one
+
+
+def packing_of_shape(shape: Shape) -> Packing:
+    """Return how the numbers of a column, an array or a scalar are written.
+
+    Arrays of single bytes are pictures, and stay bytes.
+    """
+    dtype = np.dtype(str(shape.detail[0]))
+    is_picture = shape.kind is Kind.ARRAY and dtype.kind in "iu" and dtype.itemsize == 1
+    return RAW if is_picture else packing_of(dtype)
 
 
 def identifier(text: str) -> str:

@@ -15,7 +15,7 @@ from google.protobuf.descriptor_pb2 import (
 )
 from google.protobuf.message import Message
 
-from dyknow.recordings.columns import BYTE_STRINGS, packing_of_text
+from dyknow.recordings.columns import BYTE_STRINGS
 from dyknow.recordings.layout import Field, Kind, Layout, Shape
 from dyknow.recordings.places import (
     FIRST_COLUMN,
@@ -25,6 +25,7 @@ from dyknow.recordings.places import (
     identifier,
     is_number,
     is_repeated_as_it_is,
+    packing_of_shape,
     places_of,
 )
 
@@ -125,7 +126,7 @@ class _Message:
         if shape.kind in _TYPES:
             return self.add(place.name, place.number, _TYPES[shape.kind], is_repeated=is_repeated)
         if shape.kind is Kind.SCALAR and has_numbers(shape):
-            packing = packing_of_text(str(shape.detail[0]))
+            packing = packing_of_shape(shape)
             kind = packing.field_type if is_number(shape) else _T.TYPE_BYTES
             return self.add(place.name, place.number, kind)
         return self.add_message(place.name, place.number, shape, is_repeated=is_repeated)
@@ -166,7 +167,7 @@ class _Message:
     def add_elements(self, name: str, number: int, shape: Shape) -> None:
         """Add a field for the elements of an array."""
         if has_numbers(shape):
-            packing = packing_of_text(str(shape.detail[0]))
+            packing = packing_of_shape(shape)
             self.add(name, number, packing.field_type, is_repeated=packing.wire is not None)
         else:
             nested = _Message(self._free(name.title().replace("_", "")))
