@@ -9,7 +9,17 @@ from types import FrameType
 
 import typer
 
-from traffic.commands import benchmark, check, inspect, network, report, run, scenarios
+from traffic.commands import (
+    benchmark,
+    check,
+    inspect,
+    network,
+    recover,
+    replay,
+    report,
+    run,
+    scenarios,
+)
 from traffic.commands.complaining import complaint_about
 
 __all__ = ["app", "main"]
@@ -22,6 +32,8 @@ app = typer.Typer(
     pretty_exceptions_enable=False,
 )
 app.command("run")(run.run)
+app.command("replay")(replay.replay)
+app.command("recover")(recover.recover)
 app.command("report")(report.report)
 app.command("inspect")(inspect.inspect)
 app.command("check")(check.check)

@@ -6,6 +6,7 @@ from pathlib import Path
 __all__ = [
     "NetworkBuildError",
     "RecordingError",
+    "ReplayError",
     "RequestError",
     "ResultError",
     "ScenarioError",
@@ -61,6 +62,15 @@ class NetworkBuildError(TrafficError):
 
 class RecordingError(TrafficError):
     """Recorded poses are missing, incomplete, or out of order."""
+
+    def __init__(self, path: Path, fault: str) -> None:
+        super().__init__(f"{path}: {fault}")
+        self.path = path
+        self.fault = fault
+
+
+class ReplayError(TrafficError):
+    """A recording of a run cannot be replayed, or not as it was asked for."""
 
     def __init__(self, path: Path, fault: str) -> None:
         super().__init__(f"{path}: {fault}")

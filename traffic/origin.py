@@ -3,7 +3,7 @@
 import hashlib
 import platform
 import shutil
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 
@@ -13,7 +13,7 @@ from traffic.request import RunRequest
 from traffic.scenarios import Scenario
 from traffic.sumo.opening import network_of
 
-__all__ = ["Origin", "digest_of", "origin_of", "versions", "write_origin"]
+__all__ = ["Origin", "digest_of", "origin_of", "system_name", "versions", "write_origin"]
 
 _DISTRIBUTION = "dyknow-traffic"
 _OTHERS = ("libsumo", "numpy", "opencv-python-headless", "scipy", "shapely")
@@ -48,7 +48,7 @@ def origin_of(request: RunRequest, files: Iterable[Path] = ()) -> Origin:
     network = network_of(request.scenario)
     return Origin(
         versions=versions(),
-        system=f"{platform.system()} {platform.machine()}",
+        system=system_name(),
         request={
             "view": str(request.view),
             "sample_period_ns": request.sample_period,
@@ -72,22 +72,38 @@ def versions() -> dict[str, str]:
     }
 
 
+def system_name() -> str:
+    """Return the names of the operating system and of the kind of machine."""
+    return f"{platform.system()} {platform.machine()}"
+
+
 def digest_of(path: Path) -> str:
     """Return the SHA-256 of the file at *path*."""
     return hashlib.sha256(path.read_bytes()).hexdigest()
 
 
-def write_origin(origin: Origin, files: Sequence[Path], folder: Path) -> None:
-    """Write `origin.json` into *folder*, and copies of *files* as its `specification`."""
+def write_origin(
+    origin: Origin, specification: tuple[str, str], files: Iterable[Path], folder: Path
+) -> None:
+    """Write `origin.json` into *folder*, and what it was made from into `specification`.
+
+    Args:
+        origin: The origin.
+        specification: Name and text of the specification.
+        files: What else was read; they are copied.
+        folder: The folder of the run.
+    """
     text = origin.model_dump_json(indent=1)
     (folder / "origin.json").write_text(f"{text}\n", encoding="utf-8")
     copies = folder / "specification"
     copies.mkdir()
-    names: set[str] = set()
+    name, declared = specification
+    (copies / name).write_text(declared, encoding="utf-8")
+    names = {name}
     for number, path in enumerate(files, start=1):
-        name = path.name if path.name not in names else f"{number}-{path.name}"
-        names.add(name)
-        shutil.copyfile(path, copies / name)
+        copy = path.name if path.name not in names else f"{number}-{path.name}"
+        names.add(copy)
+        shutil.copyfile(path, copies / copy)
 
 
 def _version(distribution: str) -> str:

@@ -156,8 +156,9 @@ class Replay(_Value):
 
     Attributes:
         recording: The file.
-        changes: What is not as it was when that was recorded, a line each: the specification,
-            files, versions of libraries.
+        changes: Why streams may differ, a line each: what is not as it was when that was
+            recorded (the specification, files, versions of libraries), and what it lacks.
+        notes: What else one should know, a line each.
         taken: Labels of the streams that were taken from the recording.
         compared: Number of streams that were computed and had been recorded.
         identical: Number of these that came out byte by byte as they were recorded.
@@ -166,10 +167,16 @@ class Replay(_Value):
 
     recording: str
     changes: list[str]
+    notes: list[str]
     taken: list[str]
     compared: int
     identical: int
     differences: list[StreamDifference]
+
+    @property
+    def is_fault(self) -> bool:
+        """Whether the same system gave other streams for the same input."""
+        return bool(self.differences) and not self.changes
 
 
 class RunResult(_Value):

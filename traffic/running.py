@@ -6,9 +6,12 @@ from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Protocol
 
 from chronicles.events import Recognition
+from dyknow.inspection.taking import snapshot
 from dyknow.kpl.names import Declarations
+from dyknow.kpl.plan import Network
 from dyknow.kpl.syntax import Specification
 from dyknow.runtime.clock import WallClock
 from dyknow.runtime.subscriptions import StreamViolation
@@ -16,11 +19,12 @@ from dyknow.streams.sample import Sample
 from dyknow.streams.table import Table
 from dyknow.time import MILLISECOND, SECOND, Duration, TimePoint
 from networks.reading import read_road_map
-from networks.roads import RoadMap
 from perception.camera import Camera
 from traffic.errors import RequestError
 from traffic.origin import Origin, origin_of, write_origin
 from traffic.overlaying import Overlay
+from traffic.recording.describing import RunDescription
+from traffic.recording.writing import recorded
 from traffic.request import DEFAULT_PERIOD, RunRequest, View
 from traffic.results import Lateness, RunResult, Timing, new_folder, run_folder, write_result
 from traffic.scoring.score import Scorer, Verdict, unjudged
@@ -35,7 +39,16 @@ from traffic.system import (
 )
 from traffic.world import World, camera_of, generators_of
 
-__all__ = ["OnProgress", "Told", "Watch", "run_scenario", "told_of"]
+__all__ = [
+    "Companion",
+    "OnProgress",
+    "Told",
+    "Watch",
+    "run_scenario",
+    "scorer_for",
+    "told_of",
+    "write_network",
+]
 
 _CARS = "cars"
 _RECOGNITIONS = "recognitions"
@@ -43,6 +56,16 @@ _IMAGES = ("colour_images", "thermal_images")
 
 OnProgress = Callable[[float, float], None]
 """Told the seconds simulated so far and the seconds in all."""
+
+
+class Companion(Protocol):
+    """Keeps pace with a run."""
+
+    def advance(self, now: TimePoint) -> None:
+        """Take note that the work of the instant *now* begins."""
+
+    def finish(self) -> None:
+        """Take note that the run is over."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -80,16 +103,22 @@ def run_scenario(request: RunRequest, on_progress: OnProgress) -> tuple[RunResul
         run_folder(path) as folder,
         open_simulation(request.scenario, folder / "sumo", traffic) as simulation,
     ):
-        scorer = _scorer(road_map, simulation, camera)
-        vehicles = _Vehicles(simulation, scorer.observe_frame)
+        vehicles = _Vehicles(simulation)
         world = World(road_map, vehicles, camera, sensors)
         system = _system(request, specification, world)
-        files = (request.specification or bundled_specification(), *system.files)
-        origin = origin_of(request, system.files)
-        write_origin(origin, files, folder)
+        description = _description(request, system)
+        write_origin(description.origin, description.named_text, system.files, folder)
+        scorer = scorer_for(world, simulation)
+        vehicles.observers.append(scorer.observe_frame)
         watch = Watch(system, scorer)
-        with _film(request, camera, watch):
-            result = watch.complete(told_of(origin), on_progress, real_time=request.real_time)
+        with (
+            _film(request, camera, watch),
+            _recording(request, description, system, world, simulation) as keep,
+        ):
+            vehicles.observers.append(keep)
+            told = told_of(description.origin)
+            result = watch.complete(told, on_progress, real_time=request.real_time)
+        write_network(system.network, folder)
         write_result(result, folder)
     return result, path
 
@@ -135,20 +164,20 @@ class Watch:
         self,
         told: Told,
         on_progress: OnProgress,
-        on_time: Callable[[TimePoint], None] | None = None,
+        companion: Companion | None = None,
         *,
         real_time: bool = False,
     ) -> RunResult:
         """Run to the end and judge what was recognised.
 
-        *on_time* is told each instant before its work begins. In *real_time* an instant is
-        worked on when it is that time on the clock on the wall; nothing else changes.
+        The *companion* keeps pace with it. In *real_time* an instant is worked on when it is
+        that time on the clock on the wall; nothing else changes.
         """
         total = told.duration / SECOND
 
         def tell(now: TimePoint) -> None:
-            if on_time is not None:
-                on_time(now)
+            if companion is not None:
+                companion.advance(now)
             on_progress(now / SECOND, total)
 
         kernel = self._network.kernel
@@ -156,6 +185,8 @@ class Watch:
         began = time.perf_counter()
         kernel.run(TimePoint(told.duration), tell, clock)
         wall = time.perf_counter() - began
+        if companion is not None:
+            companion.finish()
         verdict = self._verdict()
         return RunResult(
             scenario=told.scenario,
@@ -206,30 +237,69 @@ def _film(request: RunRequest, camera: Camera | None, watch: Watch) -> Iterator[
 
 
 class _Vehicles:
-    """The source of the simulator's vehicles; shows each frame to an observer as well."""
+    """The source of the simulator's vehicles; shows each frame to observers as well.
 
-    def __init__(self, simulation: Simulation, observe: Callable[[Frame], None]) -> None:
+    Attributes:
+        observers: Who is shown each frame before it enters the network.
+    """
+
+    def __init__(self, simulation: Simulation) -> None:
+        self.observers: list[Callable[[Frame], None]] = []
         self._simulation = simulation
-        self._observe = observe
 
     def samples(self) -> Iterator[Sample[Table]]:
         """Yield the vehicles of each frame, available at once."""
         while (frame := self._simulation.step()) is not None:
-            self._observe(frame)
+            for observe in self.observers:
+                observe(frame)
             yield Sample(frame.vehicles, frame.time, frame.time)
 
 
-def _scorer(road_map: RoadMap, simulation: Simulation, camera: Camera | None) -> Scorer:
-    return Scorer(road_map, simulation, camera.footprint() if camera is not None else None)
+def scorer_for(world: World, simulation: Simulation) -> Scorer:
+    """Return what scores a run in *world*, given the truth that *simulation* knows."""
+    footprint = world.camera.footprint() if world.camera is not None else None
+    return Scorer(world.road_map, simulation, footprint)
+
+
+def write_network(network: Network, folder: Path) -> None:
+    """Write what the network looks like now into the folder of its run."""
+    (folder / "network.json").write_text(snapshot(network).to_json(), encoding="utf-8")
 
 
 def _system(request: RunRequest, specification: Specification, world: World) -> MonitoringSystem:
     outputs = outputs_of(specification)
     if request.overlay is not None:
         outputs += tuple(name for name in _IMAGES if name not in outputs)
-    return MonitoringSystem(
-        world, _parameters(request, specification), outputs, specification=specification
+    parameters = _parameters(request, specification)
+    return MonitoringSystem(world, parameters, outputs, specification=specification)
+
+
+def _description(request: RunRequest, system: MonitoringSystem) -> RunDescription:
+    place = request.specification or bundled_specification()
+    return RunDescription(
+        origin=origin_of(request, system.files),
+        text=place.read_text(encoding="utf-8"),
+        place=str(place),
+        parameters=_parameters(request, system.specification),
+        outputs=system.network.outputs,
     )
+
+
+@contextmanager
+def _recording(
+    request: RunRequest,
+    description: RunDescription,
+    system: MonitoringSystem,
+    world: World,
+    simulation: Simulation,
+) -> Iterator[Callable[[Frame], None]]:
+    """Record what the system does while the block lasts, if that was asked for."""
+    if request.recording is None:
+        yield lambda _: None
+        return
+    parts = system, world.road_map, simulation
+    with recorded(request.recording, description, *parts) as keep:
+        yield keep
 
 
 def _parameters(request: RunRequest, specification: Specification) -> dict[str, object]:

@@ -28,6 +28,7 @@ from dyknow.kpl.parser import parse_specification
 from dyknow.kpl.plan import Implementations, Network, build_network
 from dyknow.kpl.printer import text_from
 from dyknow.kpl.syntax import (
+    ANY_SORT,
     GeneratorDeclaration,
     Label,
     Link,
@@ -61,19 +62,23 @@ from traffic.features.stability import StableFor
 from traffic.world import World
 
 __all__ = [
+    "IMAGE_SORTS",
     "Made",
     "MonitoringSystem",
     "bundled_specification",
     "image_labels",
     "implementations_of",
+    "labels_of_sort",
     "outputs_of",
     "outputs_of_sort",
     "read_specification",
+    "sort_of",
     "specification_from",
 ]
 
 _SPECIFICATION = "monitoring.kpl"
-_IMAGE_SORTS = frozenset({"colour_image", "thermal_image"})
+IMAGE_SORTS = frozenset({"colour_image", "thermal_image"})
+"""The sorts of images in the specification."""
 
 
 class MonitoringSystem:
@@ -235,8 +240,27 @@ def image_labels(specification: Specification) -> frozenset[str]:
         if isinstance(each, StreamTerm)
     }
     return frozenset(
-        label for label, process in {**used, **made}.items() if sorts.of(process) & _IMAGE_SORTS
+        label for label, process in {**used, **made}.items() if sorts.of(process) & IMAGE_SORTS
     )
+
+
+def labels_of_sort(specification: Specification, *wanted: str) -> tuple[str, ...]:
+    """Return the labels of the generators whose process gives values of one of these sorts."""
+    sorts = _Sorts(specification)
+    return tuple(
+        text_from(each.label)
+        for each in sorts.generators
+        if isinstance(each.process, SourceInstance | UnitInstance | Link)
+        and sorts.of(each.process) <= set(wanted)
+    )
+
+
+def sort_of(specification: Specification, label: str) -> str:
+    """Return the sort of the values of a declared generator; `any` if it is not one."""
+    sorts = _Sorts(specification)
+    made = [each.process for each in sorts.generators if text_from(each.label) == label]
+    found = frozenset[str]().union(*map(sorts.of, made))
+    return next(iter(found)) if len(found) == 1 else ANY_SORT
 
 
 def outputs_of(specification: Specification) -> tuple[str, ...]:
@@ -245,7 +269,7 @@ def outputs_of(specification: Specification) -> tuple[str, ...]:
     return tuple(
         output.name.text
         for output in sorts.outputs
-        if not sorts.of(output.stream.provider) & _IMAGE_SORTS
+        if not sorts.of(output.stream.provider) & IMAGE_SORTS
     )
 
 

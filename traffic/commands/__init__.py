@@ -1,8 +1,8 @@
 """The commands, one module each; the only place that prints.
 
-`run`, `report`, `inspect`, `check`, `network`, `scenarios` and `benchmark`; `showing`,
-`showing_networks` and `showing_benchmarks` for their tables and progress bars, and `complaining`
-for what an error says to the user. What they do stands in functions that a script can call as
-well: `traffic.running.run_scenario`, `traffic.results.read_result`,
-`traffic.checking.faults_of_file`.
+`run`, `replay`, `recover`, `report`, `inspect`, `check`, `network`, `scenarios` and `benchmark`;
+`showing`, `showing_networks` and `showing_benchmarks` for their tables and progress bars, and
+`complaining` for what an error says to the user. What they do stands in functions that a script
+can call as well: `traffic.running.run_scenario`, `traffic.replaying.replay`,
+`traffic.results.read_result`, `traffic.checking.faults_of_file`.
 """

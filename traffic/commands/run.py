@@ -43,6 +43,22 @@ def run(
     overlay: Annotated[
         Path | None, typer.Option(help="Write both camera views with what is believed (.mp4).")
     ] = None,
+    record: Annotated[
+        Path | None, typer.Option(help="Write every stream to this file (.mcap).")
+    ] = None,
+    streams: Annotated[
+        str | None, typer.Option(help="With --record: only these labels, separated by commas.")
+    ] = None,
+    record_images: Annotated[
+        bool,
+        typer.Option("--record-images", help="With --record: images too, as JPEG to look at."),
+    ] = False,
+    specification: Annotated[
+        Path | None, typer.Option(help="Network of processes (.kpl); default: the bundled one.")
+    ] = None,
+    real_time: Annotated[
+        bool, typer.Option("--real-time", help="Keep to the clock on the wall; same results.")
+    ] = False,
 ) -> None:
     """Simulate traffic, watch it, and report what was recognised, scored against the truth."""
     from traffic.commands.showing import progress, show_result
@@ -60,6 +76,11 @@ def run(
         duration=duration,
         out=out,
         overlay=overlay,
+        record=record,
+        streams=streams,
+        record_images=record_images,
+        specification=specification,
+        real_time=real_time,
     )
     with progress() as on_progress:
         result, folder = run_scenario(request, on_progress)

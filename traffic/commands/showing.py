@@ -20,8 +20,10 @@ _UNKNOWN = "[dim]unknown[/]"
 
 
 @contextmanager
-def progress(doing: str = "simulating") -> Iterator[Callable[[float, float], None]]:
-    """Give a function to call with seconds done and seconds in all, shown on a terminal."""
+def progress(
+    doing: str = "simulating", unit: str = "s"
+) -> Iterator[Callable[[float, float], None]]:
+    """Give a function to call with how much is done and how much in all, shown on a terminal."""
     columns = (TextColumn("{task.description}"), BarColumn(), TextColumn("{task.fields[at]}"))
     console = Console(stderr=True)
     with Progress(
@@ -30,7 +32,7 @@ def progress(doing: str = "simulating") -> Iterator[Callable[[float, float], Non
         task = bar.add_task(doing, at="")
 
         def on_progress(done: float, total: float) -> None:
-            bar.update(task, completed=done, total=total, at=f"{done:.0f} of {total:.0f} s")
+            bar.update(task, completed=done, total=total, at=f"{done:.0f} of {total:.0f} {unit}")
 
         yield on_progress
 
@@ -44,8 +46,9 @@ def show_result(result: RunResult) -> None:
     console = Console()
     settings = ", ".join(f"{k} {v}" for k, v in result.settings.items() if v is not None)
     console.print(f"[bold]{escape(result.scenario)}[/]: {escape(settings)}", highlight=False)
-    for change in result.replay.changes if result.replay is not None else ():
-        console.print(f"changed since the recording: {escape(change)}", highlight=False)
+    if result.replay is not None:
+        for line in _about(result.replay):
+            console.print(line, highlight=False)
     console.print(_recognitions(result))
     if result.missed:
         console.print(_missed(result))
@@ -173,13 +176,23 @@ def _violations(result: RunResult) -> str:
     return f"{total} violations of policies: {streams}"
 
 
+def _about(replay: Replay) -> Iterator[str]:
+    yield from map(escape, replay.notes)
+    if replay.changes:
+        yield escape(f"what may make a difference: {'; '.join(replay.changes)}")
+    if replay.taken:
+        yield escape(f"taken from the recording: {', '.join(replay.taken)}")
+
+
 def _comparison(replay: Replay) -> Iterator[str]:
     for difference in replay.differences:
         at = f"{difference.at:g} ms"
-        yield f"[red]differs[/] {escape(difference.stream)} at {at}: {escape(difference.what)}"
-    others = replay.compared - replay.identical
+        yield (
+            f"[red]differs[/] {escape(difference.stream)} at {at}, recorded and replayed: "
+            f"{escape(difference.what)}"
+        )
     streams = "stream" if replay.compared == 1 else "streams"
-    if others:
+    if replay.differences:
         yield f"{replay.identical} of {replay.compared} {streams} identical"
     else:
         yield f"{replay.compared} {streams} identical"
