@@ -214,8 +214,6 @@ def _table(shape: Shape, codecs: Codecs) -> Write:
     writers = [_elements(place.number, place.shape, codecs) for (place,) in places]
 
     def write(table: Table) -> bytes:
-        if not len(table):
-            return b""
         columns = [w(column) for w, column in zip(writers, table.columns.values(), strict=True)]
         return delimited(1, table.ids.astype("<i8", copy=False).tobytes()) + b"".join(columns)
 
