@@ -4,8 +4,15 @@ Read in this order:
 
 - `syntax`: the classes of the syntax tree; `grammar.lark`: how it is written
 - `parser` and `printer`: from text to tree and back; `build`: trees made in Python
-- `names`: what a specification declares; `parameters`: values that the caller may choose
+- `names`: what a specification declares, and what a label means; `parameters`: values and members
+  in the places of names
 - `policies`: from constraints to a `Policy`; `settings`: what units are made with
-- `check`: every static fault; `unused`: declarations that nothing needs
+- `sorts`, `promises`, `cycles`, `duplicates`: what can be wrong; `check`: every static fault
+- `unused`: what output streams need, and declarations that nothing needs
+- `implementations`: what symbols stand for; `members`: the members of sets, and mediation
+- `assembly`: processes in and out of a kernel; `outputs`: the output streams; `configuration`:
+  what changes by itself
+- `network`: a network that can be changed while it runs; `removing`, `replacing`: what that means
+  for its specification; `description`, `describing`: what it is made of, as plain data
 - `plan`: from a specification to a network that runs
 """

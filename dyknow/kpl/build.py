@@ -60,7 +60,7 @@ def strmgen(name: Label, process: Process) -> GeneratorDeclaration:
 
 def stream(name: str, what: StreamTerm) -> StreamDeclaration:
     """Return `stream NAME = TERM`."""
-    return StreamDeclaration(Name(name), what)
+    return StreamDeclaration(label(name), what)
 
 
 def parameter(name: str, default: Value) -> ParameterDeclaration:

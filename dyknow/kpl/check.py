@@ -1,8 +1,7 @@
 """Every static fault of a KPL specification, in reading order.
 
 Names, arities, sorts, cycles, policies and settings are checked under the values that the
-parameters have; who passes other values checks again, as `dyknow.kpl.plan` does. Sources and
-computational units share one set of names; labels, streams and parameters have each their own.
+parameters have; who passes other values checks again, as `dyknow.kpl.plan` does.
 """
 
 from collections.abc import Callable, Iterator, Mapping
@@ -10,25 +9,31 @@ from typing import Any
 
 from dyknow.errors import (
     ArityError,
-    CircularDefinitionError,
-    PolicyError,
     SortMismatchError,
     SpecificationError,
     SpecificationErrors,
     UnknownNameError,
 )
-from dyknow.kpl.names import Declarations, labels_in, streams_of
+from dyknow.kpl.cycles import cycles
+from dyknow.kpl.duplicates import duplicates, unfit_member
+from dyknow.kpl.names import Declarations, Placed, Scope, streams_of
 from dyknow.kpl.parameters import bind_parameters
-from dyknow.kpl.policies import policy_from_constraints
 from dyknow.kpl.printer import text_from
+from dyknow.kpl.promises import Promises
 from dyknow.kpl.settings import repeated_settings, setting_faults
+from dyknow.kpl.sorts import Sorts, accepts
 from dyknow.kpl.syntax import (
     ANY_SORT,
+    Configuration,
     GeneratorDeclaration,
     Label,
     Link,
+    Mediation,
+    Merging,
     Name,
     Process,
+    Provider,
+    Selection,
     Setting,
     Sort,
     SourceInstance,
@@ -87,9 +92,9 @@ def faults(
     """
     bound, found = bind_parameters(specification, values or {})
     declared = Declarations(bound)
-    found.extend(declared.duplicates())
+    found.extend(duplicates(declared))
     found.extend(_Checker(declared, units or {}).faults())
-    found.extend(_cycles(declared))
+    found.extend(cycles(declared))
     return sorted(found, key=lambda fault: fault.span.start)
 
 
@@ -99,30 +104,56 @@ class _Checker:
     def __init__(self, declared: Declarations, factories: Units) -> None:
         self._declared = declared
         self._factories = factories
+        self._sorts = Sorts(declared)
+        self._promises = Promises(declared)
 
     def faults(self) -> Faults:
-        for declaration in self._declared.all:
+        for declaration, scope in self._declared.scoped():
             match declaration:
                 case GeneratorDeclaration(label, process):
                     yield from self._arity(label)
-                    yield from self._process(process)
-                case StreamDeclaration(_, stream):
-                    yield from self._stream(stream)
+                    yield from _unbound_members(label, scope)
+                    yield from self._process(process, scope)
+                    yield from self._promises.faults_of_generator(Placed(declaration, scope))
+                case StreamDeclaration(name, stream):
+                    yield from _unbound_members(name, scope)
+                    yield from self._stream(stream, scope)
+                case Configuration(_, members):
+                    yield from self._stream(members, scope)
                 case _:
                     pass
 
-    def _process(self, process: Process) -> Faults:
+    def _process(self, process: Process | Provider, scope: Scope) -> Faults:
         match process:
+            case Label():
+                yield from self._label(process, scope)
             case SourceInstance(source):
                 yield from self._source(source)
             case UnitInstance(unit, streams, settings):
-                yield from self._application(unit, streams)
+                yield from self._application(unit, streams, scope)
                 yield from self._settings(unit, settings)
             case Link():
-                yield from self._application(process.unit, (process.stream,))
+                yield from self._application(process.unit, (process.stream,), scope)
                 yield from repeated_settings(process.settings)
+            case _:
+                yield from self._operation(process, scope)
+
+    def _operation(
+        self, process: Synchronisation | Merging | Mediation | Selection, scope: Scope
+    ) -> Faults:
+        match process:
             case Synchronisation(streams):
-                yield from self._streams(streams)
+                yield from self._streams(streams, scope)
+            case Merging(streams):
+                yield from self._streams(streams, scope)
+                yield from self._one_sort(streams, scope)
+            case Mediation(stream, _, members):
+                yield from unfit_member(process, scope, self._declared)
+                yield from self._stream(members, scope)
+                yield from self._stream(stream, scope.merging(process))
+            case Selection():
+                yield from _repeated_fields(process)
+                yield from self._streams(streams_of(process), scope)
 
     def _source(self, source: Name) -> Faults:
         known = self._declared.sources
@@ -135,27 +166,35 @@ class _Checker:
             nearest = nearest_name(source.text, known)
             yield UnknownNameError("source", source.text, source.span, nearest)
 
-    def _application(self, unit: Name, streams: tuple[StreamTerm, ...]) -> Faults:
+    def _application(self, unit: Name, streams: tuple[StreamTerm, ...], scope: Scope) -> Faults:
         known = self._declared.units
         if unit.text not in known:
             nearest = nearest_name(unit.text, known)
             yield UnknownNameError("computational unit", unit.text, unit.span, nearest)
         else:
-            yield from self._arguments(unit, known[unit.text].sorts_for(len(streams)), streams)
-        yield from self._streams(streams)
+            expected = known[unit.text].sorts_for(len(streams))
+            yield from self._arguments(unit, expected, streams, scope)
+        yield from self._streams(streams, scope)
 
     def _arguments(
-        self, unit: Name, expected: tuple[Sort, ...], streams: tuple[StreamTerm, ...]
+        self, unit: Name, expected: tuple[Sort, ...], streams: tuple[StreamTerm, ...], scope: Scope
     ) -> Faults:
         if len(expected) != len(streams):
             yield ArityError(unit.text, len(expected), len(streams), unit.span)
             return
         for number, (sort, stream) in enumerate(zip(expected, streams, strict=True), start=1):
-            yield from self._sort(f"argument {number} of '{unit.text}'", sort, stream)
+            yield from self._sort(f"argument {number} of '{unit.text}'", sort, stream, scope)
 
-    def _sort(self, what: str, expected: Sort, stream: StreamTerm) -> Faults:
-        found = self._declared.sort_of(stream.provider)
-        if found is not None and not _accepts(expected, found):
+    def _one_sort(self, streams: tuple[StreamTerm, ...], scope: Scope) -> Faults:
+        """Yield a fault for each merged stream of another sort than the first that is known."""
+        sorts = (self._sorts.of(stream.provider, scope) for stream in streams)
+        expected = next((sort for sort in sorts if sort.name != ANY_SORT), Sort(ANY_SORT))
+        for number, stream in enumerate(streams, start=1):
+            yield from self._sort(f"stream {number} of 'merge'", expected, stream, scope)
+
+    def _sort(self, what: str, expected: Sort, stream: StreamTerm, scope: Scope) -> Faults:
+        found = self._sorts.of(stream.provider, scope)
+        if not accepts(expected, found):
             yield SortMismatchError(what, text_from(expected), text_from(found), stream.span)
 
     def _settings(self, unit: Name, settings: tuple[Setting, ...]) -> Faults:
@@ -163,27 +202,33 @@ class _Checker:
         if unit.text in self._factories:
             yield from setting_faults(unit, settings, self._factories[unit.text])
 
-    def _streams(self, streams: tuple[StreamTerm, ...]) -> Faults:
+    def _streams(self, streams: tuple[StreamTerm, ...], scope: Scope) -> Faults:
         for stream in streams:
-            yield from self._stream(stream)
+            yield from self._stream(stream, scope)
 
-    def _stream(self, stream: StreamTerm) -> Faults:
-        yield from _policy(stream)
-        if isinstance(stream.provider, Synchronisation):
-            yield from self._streams(stream.provider.streams)
-        else:
-            yield from self._label(stream.provider)
+    def _stream(self, stream: StreamTerm, scope: Scope) -> Faults:
+        yield from self._promises.faults_of_stream(stream, scope)
+        yield from self._process(stream.provider, scope)
 
-    def _label(self, label: Label) -> Faults:
-        name = text_from(label)
+    def _label(self, label: Label, scope: Scope) -> Faults:
         is_unbound = any(each.text in self._declared.parameters for each in label.objects)
-        if name in self._declared.generators or is_unbound:
+        meaning = self._declared.meaning(label, scope)
+        if is_unbound or meaning.all or scope.is_merged(label):
             return
-        if label.feature.text in self._declared.arities and any(self._arity(label)):
+        if meaning.elsewhere:
+            block = meaning.elsewhere[0].scope.blocks[-1]
+            message = (
+                f"'{label.text}' is not known here: it exists for each '{block.member.text}' in "
+                f"'{text_from(block.members)}' alone; expected a label that always exists, or "
+                f"'merge(... for each ...)'"
+            )
+            yield SpecificationError(message, label.span)
+        elif label.feature.text in self._declared.arities and any(self._arity(label)):
             yield from self._arity(label)
         else:
-            nearest = nearest_name(name, self._declared.generators)
-            yield UnknownNameError("stream generator", name, label.span, nearest)
+            known = [each.label.text for each in self._declared.placed]
+            nearest = nearest_name(label.text, known)
+            yield UnknownNameError("stream generator", label.text, label.span, nearest)
 
     def _arity(self, label: Label) -> Faults:
         feature, found = label.feature.text, len(label.objects)
@@ -192,41 +237,24 @@ class _Checker:
             yield ArityError(feature, expected, found, label.span)
 
 
-def _policy(stream: StreamTerm) -> Faults:
-    try:
-        policy_from_constraints(stream.constraints)
-    except ValueError as fault:
-        yield PolicyError(str(fault), stream.span)
-    except TypeError:  # a parameter is not bound, which is reported already
-        return
+def _unbound_members(label: Label, scope: Scope) -> Faults:
+    """Yield a fault if a label would be declared more than once, for several members."""
+    objects = {each.text for each in label.objects}
+    for block in scope.blocks:
+        if block.member.text not in objects:
+            message = (
+                f"'{label.text}' would be declared again for each '{block.member.text}'; "
+                f"expected '{block.member.text}' among its objects"
+            )
+            yield SpecificationError(message, label.span)
 
 
-def _accepts(expected: Sort, found: Sort) -> bool:
-    if ANY_SORT in (expected.name, found.name):
-        return True
-    if expected.name != found.name:
-        return False
-    if not expected.parts or not found.parts:
-        return True
-    return len(expected.parts) == len(found.parts) and all(
-        map(_accepts, expected.parts, found.parts)
-    )
-
-
-def _cycles(declared: Declarations) -> Faults:
-    """Yield one fault for each place where following the inputs leads back."""
-    done: set[str] = set()
-    for start in declared.generators:
-        yield from _cycles_from(start, [], done, declared)
-
-
-def _cycles_from(name: str, path: list[str], done: set[str], declared: Declarations) -> Faults:
-    if name in path:
-        circle = [*path[path.index(name) :], name]
-        yield CircularDefinitionError(circle, declared.generators[name].label.span)
-    elif name not in done and name in declared.generators:
-        path.append(name)
-        for label in labels_in(streams_of(declared.generators[name].process)):
-            yield from _cycles_from(text_from(label), path, done, declared)
-        path.pop()
-        done.add(name)
+def _repeated_fields(selection: Selection) -> Faults:
+    """Yield a fault for each field that comes out under a name that is taken for sure."""
+    names: set[str] = set()
+    for field in selection.fields:
+        name = field.path if field.pattern is None else field.pattern
+        if name in names:
+            message = f"two fields are called '{name}'; expected a name for each, with 'as'"
+            yield SpecificationError(message, field.span)
+        names.add(name)

@@ -1,42 +1,35 @@
-"""Putting the values of parameters in their places.
+"""Putting values in the places of names: parameters, and the members of sets.
 
-A parameter may stand for an object symbol, a time in a policy, or a value of a setting.
+A name may stand for an object symbol, a time in a policy, or a value of a setting or a condition.
 """
 
 from collections.abc import Mapping
-from dataclasses import replace
+from dataclasses import fields, is_dataclass, replace
+from typing import Any, TypeVar
 
 from dyknow.errors import SortMismatchError, SpecificationError, UnknownNameError
 from dyknow.kpl.syntax import (
+    Condition,
     Constraint,
-    Declaration,
-    FromTo,
-    GeneratorDeclaration,
     Label,
-    Link,
-    MaxDelay,
     Name,
     Number,
     ParameterDeclaration,
-    Process,
-    SampleEvery,
     Setting,
     Specification,
-    StreamDeclaration,
-    StreamTerm,
-    Synchronisation,
     Text,
     Time,
-    To,
     Truth,
-    UnitInstance,
     Value,
     Values,
 )
-from dyknow.source_text import nearest_name
+from dyknow.mtl.syntax import Formula
+from dyknow.source_text import Span, nearest_name
 from dyknow.time import milliseconds
 
-__all__ = ["bind_parameters", "kind_of"]
+__all__ = ["bind_label", "bind_members", "bind_parameters", "kind_of"]
+
+Node = TypeVar("Node")
 
 
 def bind_parameters(
@@ -48,8 +41,19 @@ def bind_parameters(
     """
     parameters = [d for d in specification.declarations if isinstance(d, ParameterDeclaration)]
     binder = _Binder({d.name.text: values.get(d.name.text, d.default) for d in parameters})
-    declarations = tuple(binder.declaration(each) for each in specification.declarations)
-    return replace(specification, declarations=declarations), binder.faults
+    return binder.bound(specification), binder.faults
+
+
+def bind_members(node: Node, members: Mapping[str, str]) -> Node:
+    """Return a piece of a specification with the objects that names of members stand for."""
+    bound: Node = _Binder({name: Name(member) for name, member in members.items()}).bound(node)
+    return bound
+
+
+def bind_label(node: Node, member: str, label: Label) -> Node:
+    """Return a piece of a specification with *label* for each label that is *member* alone."""
+    bound: Node = _Binder({}, {member: label}).bound(node)
+    return bound
 
 
 def kind_of(value: Value) -> str:
@@ -68,48 +72,48 @@ def kind_of(value: Value) -> str:
 
 
 class _Binder:
-    """Replaces names of parameters, and collects the uses that are at fault."""
+    """Replaces names, and collects the uses that are at fault."""
 
-    def __init__(self, values: Mapping[str, Value]) -> None:
+    def __init__(
+        self, values: Mapping[str, Value], labels: Mapping[str, Label] | None = None
+    ) -> None:
         self._values = values
+        self._labels = labels or {}
         self.faults: list[SpecificationError] = []
 
-    def declaration(self, node: Declaration) -> Declaration:
+    def bound(self, node: Any) -> Any:
+        """Return *node* with the values of names in their places."""
+        new: Any = node
         match node:
-            case GeneratorDeclaration(label, process):
-                return replace(node, label=self._label(label), process=self._process(process))
-            case StreamDeclaration(_, stream):
-                return replace(node, stream=self._term(stream))
+            case tuple():
+                parts = tuple(map(self.bound, node))
+                is_same = all(a is b for a, b in zip(parts, node, strict=True))
+                new = node if is_same else parts
             case ParameterDeclaration(name):
-                return replace(node, default=self._values[name.text])
+                new = replace(node, default=self._values.get(name.text, node.default))
+            case Label():
+                new = self._label(node)
+            case Setting() | Condition():
+                new = replace(node, value=self._value(node.value))
+            case _ if isinstance(node, Constraint):
+                new = self._constraint(node)
+            case _ if is_dataclass(node) and not isinstance(node, Formula | Span):
+                new = self._parts(node, self.bound)
             case _:
-                return node
+                pass
+        return new
 
-    def _process(self, node: Process) -> Process:
-        match node:
-            case UnitInstance(_, streams, settings):
-                return replace(node, streams=self._terms(streams), settings=self._all(settings))
-            case Link():
-                settings = self._all(node.settings)
-                return replace(node, stream=self._term(node.stream), settings=settings)
-            case Synchronisation(streams):
-                return replace(node, streams=self._terms(streams))
-            case _:
-                return node
-
-    def _terms(self, nodes: tuple[StreamTerm, ...]) -> tuple[StreamTerm, ...]:
-        return tuple(self._term(node) for node in nodes)
-
-    def _term(self, node: StreamTerm) -> StreamTerm:
-        constraints = tuple(self._constraint(each) for each in node.constraints)
-        if isinstance(node.provider, Label):
-            return replace(node, provider=self._label(node.provider), constraints=constraints)
-        streams = self._terms(node.provider.streams)
-        provider = replace(node.provider, streams=streams)
-        return replace(node, provider=provider, constraints=constraints)
+    def _parts(self, node: Any, bound: Any) -> Any:
+        """Return *node* with each of its parts replaced, if there is anything to replace."""
+        parts = {each.name: getattr(node, each.name) for each in fields(node)}
+        new = {name: bound(part) for name, part in parts.items()}
+        changed = {name: part for name, part in new.items() if part is not parts[name]}
+        return replace(node, **changed) if changed else node
 
     def _label(self, node: Label) -> Label:
-        return replace(node, objects=tuple(self._object(each) for each in node.objects))
+        if node.text in self._labels:
+            return replace(self._labels[node.text], span=node.span)
+        return replace(node, objects=tuple(map(self._object, node.objects)))
 
     def _object(self, node: Name) -> Name:
         match self._values.get(node.text):
@@ -121,9 +125,6 @@ class _Binder:
                 self._report_sort(node, "an object", kind_of(value))
                 return node
 
-    def _all(self, nodes: tuple[Setting, ...]) -> tuple[Setting, ...]:
-        return tuple(replace(node, value=self._value(node.value)) for node in nodes)
-
     def _value(self, node: Value) -> Value:
         match node:
             case Name(name) if name in self._values:
@@ -134,19 +135,11 @@ class _Binder:
                 return node
 
     def _constraint(self, node: Constraint) -> Constraint:
-        match node:
-            case SampleEvery(Name() as name):
-                return replace(node, period=self._time(name))
-            case MaxDelay(Name() as name):
-                return replace(node, delay=self._time(name))
-            case FromTo(start, end):
-                start = self._time(start) if isinstance(start, Name) else start
-                end = self._time(end) if isinstance(end, Name) else end
-                return replace(node, start=start, end=end)
-            case To(Name() as name):
-                return replace(node, end=self._time(name))
-            case _:
-                return node
+        """Return a constraint without names: those it has all stand for times."""
+        bound: Constraint = self._parts(
+            node, lambda part: self._time(part) if isinstance(part, Name) else part
+        )
+        return bound
 
     def _time(self, node: Name) -> Time | Name:
         match self._values.get(node.text):

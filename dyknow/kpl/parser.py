@@ -15,27 +15,35 @@ from lark.tree import Meta
 
 from dyknow.errors import FormulaSyntaxError, KPLSyntaxError
 from dyknow.kpl import syntax
-from dyknow.kpl.syntax import Specification, Text, Value
+from dyknow.kpl.syntax import Constraint, Specification, Text, Value
 from dyknow.mtl.parser import parse_formula
 from dyknow.mtl.syntax import Formula
+from dyknow.runtime.failures import OnFailure
 from dyknow.source_text import SourceText, Span
 from dyknow.time import Duration, duration_from_text
 
-__all__ = ["parse_specification", "parse_value"]
+__all__ = ["parse_policy", "parse_specification", "parse_value"]
 
 _PHRASES = {
     "$END": "the end of the text",
     "AND_MORE": "', ...'",
+    "COUNT": "a whole number",
+    "FAILURE": "'end' or 'stop'",
+    "FIELD": "a field",
     "FORMULA": "a formula",
     "NAME": "a name",
     "NUMBER": "a number",
+    "PATTERN": "a pattern",
     "SETTING": "a setting",
     "STRING": "a string",
     "TIME": "a time",
     "TIME_WITH_UNIT": "a time",
+    "OBJECT": "'object'",
+    "_COMMON_PERIOD": "'common period'",
     "_THEN_CONSTRAINT": "','",
     "_THEN_SETTING": "','",
     "_ESTABLISH": "'establish ='",
+    "_SELECT": "'select'",
     "_REESTABLISH": "'reestablish ='",
     "_MAINTAIN": "'maintain ='",
 }
@@ -72,13 +80,32 @@ def parse_value(text: str) -> Value:
     return found
 
 
+def parse_policy(text: str, name: str = "<policy>") -> tuple[Constraint, ...]:
+    """Return the constraints of a policy, written as after `with`; none for an empty text.
+
+    Raises:
+        KPLSyntaxError: The text does not follow the grammar.
+    """
+    if not text.strip():
+        return ()
+    source = SourceText(name, text)
+    try:
+        tree = _parser().parse(text, start="policy")
+        found: tuple[Constraint, ...] = _transformer(source).transform(tree)
+    except UnexpectedInput as fault:
+        raise _syntax_error(fault, source) from None
+    except VisitError as fault:
+        raise fault.orig_exc from None
+    return found
+
+
 @cache
 def _parser() -> Lark:
     grammar = Path(__file__).with_name("grammar.lark").read_text(encoding="utf-8")
     return Lark(
         grammar,
         parser="lalr",
-        start=["specification", "value"],
+        start=["specification", "policy", "value"],
         propagate_positions=True,
         postlex=_WholeWords(),
     )
@@ -131,6 +158,9 @@ class _Leaves(Transformer[Token, Any]):
     def NUMBER(self, token: Token) -> int | float:
         return int(token) if re.fullmatch(r"[+-]?\d+", token) else float(token)
 
+    def COUNT(self, token: Token) -> int:
+        return int(token)
+
     def TIME(self, token: Token) -> Duration:
         try:
             return duration_from_text(str(token))
@@ -144,6 +174,14 @@ class _Leaves(Transformer[Token, Any]):
 
     def TRUTH(self, token: Token) -> bool:
         return str(token) == "true"
+
+    def on_failure(self, words: list[str | None]) -> OnFailure:
+        return OnFailure(words[0]) if words[0] else OnFailure.STOP
+
+    def deviation(self, times: list[Any]) -> Any:
+        return times[0] if times else None
+
+    longest = deviation
 
     def FORMULA(self, token: Token) -> Formula:
         """Parse the formula in a copy of the text that is blank elsewhere: places stay right."""

@@ -6,16 +6,20 @@ from functools import singledispatch
 
 from dyknow.kpl import syntax
 from dyknow.mtl.printer import text_from_formula
+from dyknow.runtime.failures import OnFailure
 from dyknow.time import text_from_duration
 
 __all__ = ["text_from"]
+
 
 Printable = (
     syntax.Specification
     | syntax.Declaration
     | syntax.Process
+    | syntax.Provider
     | syntax.StreamTerm
-    | syntax.Label
+    | syntax.SelectedField
+    | syntax.Condition
     | syntax.Constraint
     | syntax.Setting
     | syntax.Value
@@ -53,7 +57,11 @@ def _(node: syntax.UnitDeclaration) -> str:
 
 @_text.register
 def _(node: syntax.GeneratorDeclaration) -> str:
-    return f"strmgen {_text(node.label)} = {_text(node.process)}"
+    on_failure = (
+        "" if node.on_failure is OnFailure.STOP else f" on failure {node.on_failure.value}"
+    )
+    policy = _policy(node.constraints)
+    return f"strmgen {node.label.text} = {_text(node.process)}{policy}{on_failure}"
 
 
 @_text.register
@@ -67,14 +75,20 @@ def _(node: syntax.ParameterDeclaration) -> str:
 
 
 @_text.register
+def _(node: syntax.Configuration) -> str:
+    lines = [line for each in node.declarations for line in _text(each).split("\n")]
+    inner = "".join(f"    {line}\n" for line in lines)
+    return f"{_for_each(node)} {{\n{inner}}}"
+
+
+@_text.register
 def _(node: syntax.Sort) -> str:
     return f"{node.name}({_list(node.parts)})" if node.parts else node.name
 
 
 @_text.register
 def _(node: syntax.Label) -> str:
-    objects = f"[{_list(node.objects)}]" if node.objects else ""
-    return f"{node.feature.text}{objects}"
+    return node.text
 
 
 @_text.register
@@ -93,6 +107,33 @@ def _(node: syntax.Synchronisation) -> str:
 
 
 @_text.register
+def _(node: syntax.Merging) -> str:
+    return f"merge({_list(node.streams)})"
+
+
+@_text.register
+def _(node: syntax.Mediation) -> str:
+    return f"merge({_text(node.stream)} {_for_each(node)})"
+
+
+@_text.register
+def _(node: syntax.Selection) -> str:
+    fields = _list(node.fields) or "*"
+    where = f" where {' and '.join(map(_text, node.conditions))}" if node.conditions else ""
+    return f"select {fields} from {_text(node.provider)}{where}"
+
+
+@_text.register
+def _(node: syntax.SelectedField) -> str:
+    return node.path if node.pattern is None else f"{node.path} as {node.pattern}"
+
+
+@_text.register
+def _(node: syntax.Condition) -> str:
+    return f"{node.path} = {_value(node.value)}"
+
+
+@_text.register
 def _(node: syntax.Link) -> str:
     parts = [
         _text(node.stream),
@@ -108,8 +149,7 @@ def _(node: syntax.Link) -> str:
 
 @_text.register
 def _(node: syntax.StreamTerm) -> str:
-    policy = f" with {_list(node.constraints)}" if node.constraints else ""
-    return f"{_text(node.provider)}{policy}"
+    return f"{_text(node.provider)}{_policy(node.constraints)}"
 
 
 @_text.register
@@ -163,6 +203,11 @@ def _(_node: syntax.UseMostRecent) -> str:
 
 
 @_text.register
+def _(_node: syntax.UseLinear) -> str:
+    return "use linear"
+
+
+@_text.register
 def _(_node: syntax.AnyUpdate) -> str:
     return "any update"
 
@@ -173,13 +218,40 @@ def _(_node: syntax.AnyChange) -> str:
 
 
 @_text.register
+def _(_node: syntax.AllUpdates) -> str:
+    return "all updates"
+
+
+@_text.register
+def _(_node: syntax.SampleEveryCommonPeriod) -> str:
+    return "sample every common period"
+
+
+@_text.register
 def _(node: syntax.SampleEvery) -> str:
-    return f"sample every {_text(node.period)}"
+    deviation = "" if node.deviation is None else f" deviation {_text(node.deviation)}"
+    longest = "" if node.longest is None else f" up to {_text(node.longest)} under load"
+    return f"sample every {_text(node.period)}{deviation}{longest}"
+
+
+@_text.register
+def _(node: syntax.DelayBeforeApproximation) -> str:
+    return f"delay before approximation {_text(node.delay)}"
 
 
 @_text.register
 def _(node: syntax.MaxDelay) -> str:
     return f"max delay {_text(node.delay)}"
+
+
+@_text.register
+def _(_node: syntax.AtMaxDelay) -> str:
+    return "at max delay"
+
+
+@_text.register
+def _(node: syntax.Capacity) -> str:
+    return f"capacity {node.count}"
 
 
 @_text.register
@@ -210,6 +282,14 @@ def _(_node: syntax.StrictOrder) -> str:
 
 def _list(nodes: Iterable[Printable]) -> str:
     return ", ".join(map(_text, nodes))
+
+
+def _policy(constraints: tuple[syntax.Constraint, ...]) -> str:
+    return f" with {_list(constraints)}" if constraints else ""
+
+
+def _for_each(node: syntax.Mediation | syntax.Configuration) -> str:
+    return f"for each {node.member.text} in {_text(node.members)}"
 
 
 def _value(node: syntax.Value) -> str:

@@ -9,30 +9,44 @@ from dataclasses import dataclass, field
 from lark.ast_utils import AsList, Ast
 
 from dyknow.mtl.syntax import Formula
+from dyknow.runtime.failures import OnFailure
 from dyknow.source_text import MADE_IN_PYTHON, Span
 from dyknow.time import Duration
 
 __all__ = [
     "ANY_SORT",
+    "OBJECT_SORT",
     "STATE_SORT",
+    "AllUpdates",
     "AnyChange",
     "AnyOrder",
     "AnyUpdate",
+    "AtMaxDelay",
+    "Capacity",
+    "Condition",
+    "Configuration",
     "Constraint",
     "Declaration",
+    "DelayBeforeApproximation",
     "Endless",
     "FromTo",
     "GeneratorDeclaration",
     "Label",
     "Link",
     "MaxDelay",
+    "Mediation",
+    "Merging",
     "MonotoneOrder",
     "Name",
     "NoApproximation",
     "Number",
     "ParameterDeclaration",
     "Process",
+    "Provider",
     "SampleEvery",
+    "SampleEveryCommonPeriod",
+    "SelectedField",
+    "Selection",
     "Setting",
     "Sort",
     "SourceDeclaration",
@@ -48,6 +62,7 @@ __all__ = [
     "Truth",
     "UnitDeclaration",
     "UnitInstance",
+    "UseLinear",
     "UseMostRecent",
     "Value",
     "Values",
@@ -58,6 +73,9 @@ ANY_SORT = "any"
 
 STATE_SORT = "state"
 """The sort of states, with the sorts of their values as parts."""
+
+OBJECT_SORT = "object"
+"""The sort of what a table says about one object, with the sort of the table as its part."""
 
 
 @dataclass(frozen=True)
@@ -76,7 +94,7 @@ class Name(_Node):
 
 @dataclass(frozen=True)
 class Sort(_Node):
-    """A sort of values; only `state` has parts."""
+    """A sort of values; only `state` and `object` have parts."""
 
     name: str
     parts: tuple["Sort", ...] = ()
@@ -88,6 +106,12 @@ class Label(_Node):
 
     feature: Name
     objects: tuple[Name, ...] = ()
+
+    @property
+    def text(self) -> str:
+        """The label as it is written."""
+        objects = ", ".join(each.text for each in self.objects)
+        return f"{self.feature.text}[{objects}]" if objects else self.feature.text
 
 
 @dataclass(frozen=True)
@@ -145,6 +169,11 @@ class UseMostRecent(_Node):
 
 
 @dataclass(frozen=True)
+class UseLinear(_Node):
+    """A state may hold a point of the line from the sample before to the sample after."""
+
+
+@dataclass(frozen=True)
 class AnyUpdate(_Node):
     """Every sample is wanted."""
 
@@ -155,10 +184,35 @@ class AnyChange(_Node):
 
 
 @dataclass(frozen=True)
+class AllUpdates(_Node):
+    """There is a state when every input has had a sample since the last one."""
+
+
+@dataclass(frozen=True)
 class SampleEvery(_Node):
-    """Consecutive samples are one period of valid time apart."""
+    """Consecutive samples are one period of valid time apart.
+
+    Attributes:
+        period: The sample period.
+        deviation: How much the distance may differ from the period; None for not at all.
+        longest: How long the period may be made under load; None if it must stay as it is.
+    """
 
     period: Time | Name
+    deviation: Time | Name | None = None
+    longest: Time | Name | None = None
+
+
+@dataclass(frozen=True)
+class SampleEveryCommonPeriod(_Node):
+    """There is a state every greatest common divisor of the sample periods of the inputs."""
+
+
+@dataclass(frozen=True)
+class DelayBeforeApproximation(_Node):
+    """How long a synchronisation waits before it approximates a value (def. 7.8.5)."""
+
+    delay: Time | Name
 
 
 @dataclass(frozen=True)
@@ -166,6 +220,18 @@ class MaxDelay(_Node):
     """Samples are at most so much later than their valid times."""
 
     delay: Time | Name | Endless
+
+
+@dataclass(frozen=True)
+class AtMaxDelay(_Node):
+    """A state is made when the maximal delay has passed, never earlier."""
+
+
+@dataclass(frozen=True)
+class Capacity(_Node):
+    """How many samples of one input may wait for the others."""
+
+    count: int
 
 
 @dataclass(frozen=True)
@@ -201,32 +267,106 @@ class StrictOrder(_Node):
 Constraint = (
     NoApproximation
     | UseMostRecent
+    | UseLinear
     | AnyUpdate
     | AnyChange
+    | AllUpdates
     | SampleEvery
+    | SampleEveryCommonPeriod
+    | DelayBeforeApproximation
     | MaxDelay
+    | AtMaxDelay
+    | Capacity
     | FromTo
     | To
     | AnyOrder
     | MonotoneOrder
     | StrictOrder
 )
-"""A constraint of a policy (definition 4.4.8)."""
+"""A constraint of a policy (definitions 4.4.8 and 7.8.4)."""
 
 
 @dataclass(frozen=True)
 class StreamTerm(_Node):
-    """A stream: a generator or a synchronisation, and a policy (definition 4.4.14)."""
+    """A stream: what provides it, and a policy (definition 4.4.14).
 
-    provider: "Label | Synchronisation"
+    After a synchronisation the policy says how states are made (definition 7.8.6); after anything
+    else it is what the receiver requires.
+    """
+
+    provider: "Provider"
     constraints: tuple[Constraint, ...] = ()
 
 
 @dataclass(frozen=True)
 class Synchronisation(_Node):
-    """One stream of states from several streams: a state for each common valid time."""
+    """One stream of states from several streams (definition 7.8.6)."""
 
     streams: tuple[StreamTerm, ...]
+
+
+@dataclass(frozen=True)
+class Merging(_Node):
+    """One stream with the samples of several streams."""
+
+    streams: tuple[StreamTerm, ...]
+
+
+@dataclass(frozen=True)
+class Mediation(_Node):
+    """One stream with the samples of streams that change: a mediation process (def. 3.3.5).
+
+    Attributes:
+        stream: What is merged, for each member of the newest set; `member` stands in its labels
+            for the member, or is itself the label.
+        member: The name of the member.
+        members: A stream of sets of objects or labels, or of single ones.
+    """
+
+    stream: StreamTerm
+    member: Name
+    members: StreamTerm
+
+
+@dataclass(frozen=True)
+class SelectedField(_Node):
+    """A field of a selection.
+
+    Attributes:
+        path: Names joined by points, from the outermost to the innermost.
+        pattern: What the field is called in the result; `%PATH%` in it stands for the value of
+            another field. None leaves the name as it is.
+    """
+
+    path: str
+    pattern: str | None = None
+
+
+@dataclass(frozen=True)
+class Condition(_Node):
+    """`FIELD = VALUE` in a selection."""
+
+    path: str
+    value: Value
+
+
+@dataclass(frozen=True)
+class Selection(_Node):
+    """`select FIELDS from STREAM where CONDITIONS`.
+
+    Attributes:
+        fields: What is selected; all fields if empty, written as `*`.
+        provider: Of the stream to select from.
+        conditions: What must hold; all of them.
+    """
+
+    fields: tuple[SelectedField, ...]
+    provider: "Label | Synchronisation | Merging | Mediation"
+    conditions: tuple[Condition, ...] = ()
+
+
+Provider = Label | Synchronisation | Merging | Mediation | Selection
+"""What a stream can be taken from: a stream generator, or a process without a label."""
 
 
 @dataclass(frozen=True)
@@ -274,7 +414,7 @@ class Link(_Node):
     settings: tuple[Setting, ...] = ()
 
 
-Process = SourceInstance | UnitInstance | Link | Synchronisation
+Process = SourceInstance | UnitInstance | Link | Synchronisation | Merging | Mediation | Selection
 """What feeds a stream generator."""
 
 
@@ -311,17 +451,32 @@ class UnitDeclaration(_Node):
 
 @dataclass(frozen=True)
 class GeneratorDeclaration(_Node):
-    """`strmgen LABEL = PROCESS` (definition 4.4.7)."""
+    """`strmgen LABEL = PROCESS with POLICY on failure stop` (definition 4.4.7).
+
+    Attributes:
+        label: The name of the generator.
+        process: What feeds it.
+        constraints: What its samples keep; of a synchronisation, how states are made.
+        on_failure: Whether a failure of the process stops everything or ends the process alone.
+    """
 
     label: Label
     process: Process
+    constraints: tuple[Constraint, ...] = ()
+    on_failure: OnFailure = OnFailure.STOP
 
 
 @dataclass(frozen=True)
 class StreamDeclaration(_Node):
-    """`stream NAME = TERM`, an output of the application (definition 4.4.15)."""
+    """`stream NAME = TERM`, an output of the application (definition 4.4.15).
 
-    name: Name
+    Attributes:
+        name: The name of the stream; like a label it may name objects, as an output that there
+            is for each member of a set has to.
+        stream: What it is.
+    """
+
+    name: Label
     stream: StreamTerm
 
 
@@ -333,12 +488,28 @@ class ParameterDeclaration(_Node):
     default: Value
 
 
+@dataclass(frozen=True)
+class Configuration(_Node):
+    """`for each NAME in STREAM { ... }`: a configuration process (definition 3.3.4).
+
+    Attributes:
+        member: The name that stands for the member in labels and settings.
+        members: A stream of sets of objects, or of single ones.
+        declarations: What exists once for each member of the newest set.
+    """
+
+    member: Name
+    members: StreamTerm
+    declarations: "tuple[GeneratorDeclaration | StreamDeclaration | Configuration, ...]"
+
+
 Declaration = (
     SourceDeclaration
     | UnitDeclaration
     | GeneratorDeclaration
     | StreamDeclaration
     | ParameterDeclaration
+    | Configuration
 )
 """A statement of KPL."""
 

@@ -179,6 +179,8 @@ class RunningSource(RunningProcess):
             self.generator.put(self._next, now)
             self._next = None
             self._agenda.wake(self._asking, now)
+        elif self._next is not None:
+            self._agenda.wake(self._ticket, self._next.available_time)
         self._plan_release()
 
     def withdraw(self) -> None:

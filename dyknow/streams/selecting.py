@@ -60,15 +60,14 @@ class Select(Reactive):
     Both times of a sample stay as they are. The value is a mapping from name to field, in the
     order asked for; out of a table, a table of the rows that meet the conditions, which may be
     none. Of any other value that does not meet them nothing is emitted, nor of `NO_VALUE`.
-    Numbers are equal if they are the same number, whatever their type.
+    Numbers are equal if they are the same number, whatever their type. If no field is asked for,
+    the value keeps its fields and its form.
 
     Raises:
         ValueError: While it works: a value lacks a field, or two fields come out under one name.
     """
 
     def __init__(self, fields: Sequence[Field], conditions: Sequence[Condition] = ()) -> None:
-        if not fields:
-            raise ValueError("a select needs at least one field")
         self._fields = tuple(fields)
         self._conditions = tuple(conditions)
 
@@ -86,15 +85,34 @@ class Select(Reactive):
             return ()
         return (Sample(selected, sample.valid_time, now),)
 
-    def _of_value(self, value: Any) -> dict[str, Any]:
+    def _of_value(self, value: Any) -> Any:
+        if not self._fields:
+            return value
         named = [(_name(one, value), find_field(value, one.path)) for one in self._fields]
         return _without_repetition(named)
 
     def _of_table(self, table: Table) -> Table:
         for condition in self._conditions:
             table = table.select(_rows_equal(_column(table, condition.path), condition.value))
-        named = [(_name_of_column(one, table), _column(table, one.path)) for one in self._fields]
+        if not self._fields:
+            return table
+        named = [(self._name_in(table, one), _column(table, one.path)) for one in self._fields]
         return Table(table.sort, table.ids, _without_repetition(named))
+
+    def _name_in(self, table: Table, field: Field) -> str:
+        pattern = (".".join(field.path),) if field.name is None else field.name
+        return "".join(
+            one if isinstance(one, str) else self._common_text(table, one) for one in pattern
+        )
+
+    def _common_text(self, table: Table, path: FieldPath) -> str:
+        """Return what the column at *path* is in all rows, or would have to be, as text."""
+        required = {str(one.value) for one in self._conditions if one.path == path}
+        texts = sorted({str(one) for one in _column(table, path)} or required)
+        if len(texts) > 1:
+            name, found = ".".join(path), " and ".join(texts)
+            raise ValueError(f"a column has one name, but '{name}' is {found} in its rows")
+        return texts[0] if texts else ""
 
 
 def find_field(value: Any, path: FieldPath) -> Any:
@@ -159,22 +177,6 @@ def _name(field: Field, value: Any) -> str:
         return ".".join(field.path)
     parts = (one if isinstance(one, str) else str(find_field(value, one)) for one in field.name)
     return "".join(parts)
-
-
-def _name_of_column(field: Field, table: Table) -> str:
-    if field.name is None:
-        return ".".join(field.path)
-    return "".join(one if isinstance(one, str) else _common_text(table, one) for one in field.name)
-
-
-def _common_text(table: Table, path: FieldPath) -> str:
-    """Return what the column at *path* is in all rows, as text; nothing if there are no rows."""
-    texts = sorted({str(one) for one in _column(table, path)})
-    if len(texts) > 1:
-        raise ValueError(
-            f"a column has one name, but '{'.'.join(path)}' is {' and '.join(texts)} in its rows"
-        )
-    return texts[0] if texts else ""
 
 
 def _without_repetition(named: list[tuple[str, Any]]) -> dict[str, Any]:

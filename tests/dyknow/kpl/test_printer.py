@@ -7,7 +7,7 @@ from dyknow.kpl.printer import text_from
 from tests.support.specifications import specifications
 
 
-@settings(derandomize=True, deadline=None, max_examples=100)
+@settings(derandomize=True, deadline=None, max_examples=150)
 @given(specifications)
 def test_printing_then_parsing_is_the_identity(specification):
     """A printed tree reads as the same tree, and prints as the same text again."""
