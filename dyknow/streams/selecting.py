@@ -28,6 +28,16 @@ NamePattern = tuple[str | FieldPath, ...]
 """A name whose parts are texts and fields: `("F", ("C",))` is `F%C%`, F and the value of C."""
 
 
+_COMPARABLE: dict[str, tuple[type, ...]] = {
+    "i": (int, float),
+    "u": (int, float),
+    "f": (int, float),
+    "b": (bool,),
+    "U": (str,),
+}
+"""What the elements of an array can be compared with at once, by the kind of the array."""
+
+
 @dataclass(frozen=True, slots=True)
 class Field:
     """A field to be taken over, and what it is called from then on.
@@ -151,6 +161,9 @@ def _equals(found: Any, wanted: Any) -> bool:
 
 
 def _rows_equal(column: npt.NDArray[Any], wanted: Any) -> npt.NDArray[np.bool_]:
+    if column.ndim == 1 and type(wanted) in _COMPARABLE.get(column.dtype.kind, ()):
+        rows: npt.NDArray[np.bool_] = column == wanted
+        return rows
     return np.fromiter((_equals(one, wanted) for one in column), bool, len(column))
 
 
