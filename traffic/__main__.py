@@ -13,6 +13,7 @@ from traffic.commands import (
     benchmark,
     check,
     inspect,
+    judge,
     network,
     recover,
     replay,
@@ -36,6 +37,7 @@ app.command("replay")(replay.replay)
 app.command("recover")(recover.recover)
 app.command("report")(report.report)
 app.command("inspect")(inspect.inspect)
+app.command("judge")(judge.judge)
 app.command("check")(check.check)
 app.add_typer(network.app, name="network")
 app.command("scenarios")(scenarios.scenarios)

@@ -15,4 +15,5 @@ Read in this order:
 - `recomputing`: what a process makes of recorded streams; `comparing`: where that differs
 - `published`: whether the right violations were published
 - `judge`: all of it together
+- `specified`: what is declared, from a network; `recorded`: the execution, from a recording
 """

@@ -7,7 +7,7 @@ recorded streams it speaks of. Valid times and available times are independent o
 good as any.
 """
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from typing import Any
 
 from dyknow.errors import ProcessError
@@ -30,12 +30,32 @@ KEPT = 10
 """How many breaches of each stream are kept unless the caller says otherwise."""
 
 
-def judge(network: DeclaredNetwork, execution: Execution, keep: int = KEPT) -> Judgement:
+OnProgress = Callable[[float, float], None]
+"""Told how many declarations have been judged, and how many there are."""
+
+
+def judge(
+    network: DeclaredNetwork,
+    execution: Execution,
+    keep: int = KEPT,
+    on_progress: OnProgress | None = None,
+) -> Judgement:
     """Return whether an execution satisfies what is declared, and where it does not.
 
-    *keep* breaches of each stream are kept, the others are counted.
+    Args:
+        network: What is declared.
+        execution: What there was.
+        keep: How many breaches of each stream are kept; the others are counted.
+        on_progress: Told how far the work has come.
     """
-    return _Judge(network, execution, keep).judgement()
+    judge_at_work = _Judge(network, execution, keep)
+    n_all = sum(len(each.inputs) + 1 for each in network.processes.values())
+    findings: list[Finding] = []
+    for finding in judge_at_work.findings():
+        findings.append(finding)
+        if on_progress is not None:
+            on_progress(len(findings), n_all + len(network.outputs) + 1)
+    return Judgement(tuple(findings))
 
 
 class _Draft:
@@ -77,14 +97,13 @@ class _Judge:
         self._published = PublishedViolations(self._violations or ())
         self._suspects: set[str] = set()
 
-    def judgement(self) -> Judgement:
-        findings: list[Finding] = []
+    def findings(self) -> Iterator[Finding]:
+        """Yield a finding for each declaration, inputs before what they feed."""
         for process in self._network.processes.values():
-            findings.extend(map(self._term, process.inputs))
-            findings.append(self._generator(process))
-        findings.extend(map(self._term, self._network.outputs))
-        findings.append(self._violation_streams())
-        return Judgement(tuple(findings))
+            yield from map(self._term, process.inputs)
+            yield self._generator(process)
+        yield from map(self._term, self._network.outputs)
+        yield self._violation_streams()
 
     def _generator(self, process: DeclaredProcess) -> Finding:
         """Judge the declaration of a stream generator (definitions 4.5.4, 4.5.7 and 4.5.8)."""

@@ -12,7 +12,7 @@ from collections.abc import Collection, Iterator, Sequence
 from itertools import pairwise
 from typing import Any
 
-from dyknow.judging.declared import DeclaredStream
+from dyknow.judging.declared import ANYTHING, DeclaredStream
 from dyknow.judging.judgement import Breach, Definition
 from dyknow.judging.wording import deviation, short, times
 from dyknow.streams.approximation import extend
@@ -173,8 +173,11 @@ def policy_breaches(
 ) -> Iterator[Breach]:
     """Yield where a stream does not keep its policy (def. 4.5.11) and nothing says so.
 
-    That samples are missing under `sample every` is no breach if it was published.
+    That samples are missing under `sample every` is no breach if it was published. A policy that
+    says nothing restricts nothing, not to times after 0 either.
     """
+    if stream.policy == ANYTHING:
+        return
     missing = sorted(each.valid_time for each in published if each.constraint is Constraint.CHANGE)
     times_before = {
         sample.available_time: before.valid_time for before, sample in pairwise(recorded)

@@ -11,6 +11,9 @@ from dyknow.time import TimePoint, text_from_duration
 
 __all__ = ["heartbeat_breaches", "order_breaches", "sort_breaches"]
 
+NEVER = TimePoint(-(1 << 63))
+"""Earlier than every valid time, also of what is dated back to before the beginning."""
+
 
 def order_breaches(topic: str, samples: Sequence[Sample[Any]]) -> Iterator[Breach]:
     """Yield where available times are not unique or not in order (definition 4.3.5)."""
@@ -40,7 +43,7 @@ def heartbeat_breaches(
     topic: str, samples: Sequence[Sample[Any]], heartbeats: Sequence[Heartbeat]
 ) -> Iterator[Breach]:
     """Yield the samples that an earlier heartbeat has ruled out."""
-    at, until = 0, TimePoint(-1)
+    at, until = 0, NEVER
     for sample in samples:
         while at < len(heartbeats) and heartbeats[at].available_time < sample.available_time:
             until = max(until, heartbeats[at].until)
