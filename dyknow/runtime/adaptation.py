@@ -7,13 +7,12 @@ stream, and is made once.
 from collections import deque
 from collections.abc import Iterable, Sequence
 from copy import deepcopy
-from dataclasses import replace
 from typing import Any, Protocol
 
 from dyknow.runtime.agenda import Agenda, Ticket
 from dyknow.runtime.beginnings import Beginning
 from dyknow.runtime.generators import Beat, Receive, StreamGenerator
-from dyknow.runtime.statistics import Tally
+from dyknow.runtime.statistics import Delays
 from dyknow.streams.adapter import VariesPeriod
 from dyknow.streams.policy import Policy, Violation
 from dyknow.streams.process import Element
@@ -39,29 +38,41 @@ class Member(Protocol):
 
 
 class PlainStream:
-    """Everything that a generator produces from its beginning, under no policy.
-
-    Attributes:
-        tally: The figures of the stream, which are those of the generator.
-    """
+    """Everything that a generator produces from its beginning, under no policy."""
 
     waiting: Sequence[Element] = ()
     held: Sequence[Sample[Any]] = ()
     older: Sequence[Element] = ()
+    violations = 0
+    late = 0
+    period = None
     n_members = 1
 
     def __init__(self, generator: StreamGenerator) -> None:
-        self.tally = generator.tally
         self._generator = generator
+
+    @property
+    def delays(self) -> Delays:
+        """The delays of its samples, which are those of the generator."""
+        return self._generator.delays
+
+    @property
+    def first(self) -> TimePoint | None:
+        """The valid time of the first sample."""
+        return self._generator.first
+
+    @property
+    def heartbeats(self) -> int:
+        """How many heartbeats there were."""
+        return self._generator.heartbeats
 
     @property
     def last(self) -> Sample[Any] | None:
         """The last sample that was handed on."""
         return self._generator.last
 
-    @property
-    def period(self) -> None:
-        """The sample period in force: there is none."""
+    def deepen(self) -> None:
+        """Do nothing: a plain stream has no turns."""
 
     def join(self, member: Member) -> None:
         """Hand everything to *member*, who is the only one."""
@@ -82,16 +93,52 @@ class AdaptedStream:
 
     Attributes:
         policy: What the stream keeps.
-        tally: The figures of the stream.
+        first: The valid time of the first sample that was handed on.
         last: The last sample that was handed on.
+        violations: How often the policy could not be kept.
+        late: How many samples were left out against the wish of the policy.
+        heartbeats: How many heartbeats were handed on.
     """
+
+    __slots__ = (
+        "_adapter",
+        "_agenda",
+        "_beats",
+        "_generator",
+        "_has_alarms",
+        "_is_behind",
+        "_left_out",
+        "_made",
+        "_members",
+        "_noticed",
+        "_older",
+        "_push",
+        "_reached",
+        "_receivers",
+        "_seen",
+        "_ticket",
+        "_waiting",
+        "first",
+        "heartbeats",
+        "last",
+        "late",
+        "policy",
+        "violations",
+    )
 
     def __init__(
         self, generator: StreamGenerator, policy: Policy, agenda: Agenda, beginning: Beginning
     ) -> None:
         self.policy = policy
-        self.tally: Tally = beginning.tally
-        self.last = beginning.last
+        before = beginning.predecessor
+        self.first = before.first if before else None
+        self.last = before.last if before else None
+        self.violations = before.violations if before else 0
+        self.late = before.late if before else 0
+        self.heartbeats = before.heartbeats if before else 0
+        # The delays are those of the generator, without the one, and with the other.
+        self._left_out = None if generator.is_fresh else generator.delays.copy()
+        self._made = before.delays.copy() if before else None
         self._generator = generator
         self._agenda = agenda
         self._ticket: Ticket | None = None
@@ -102,10 +149,9 @@ class AdaptedStream:
         # What is needed for every sample is looked up once.
         self._push = self._adapter.push
         self._noticed = self._adapter.violations
-        self._note = self.tally.note
         self._has_alarms = policy.period is not None and policy.max_delay is not None
-        self._waiting: deque[Element] = deque()
-        self._older: deque[tuple[TimePoint, Element]] = deque()
+        self._waiting: list[Element] = []
+        self._older: deque[tuple[TimePoint, Element]] | None = None
         self._reached = TimePoint(beginning.begin - 1)
         self._is_behind = False
         self._seen = generator.last, generator.complete_until
@@ -133,18 +179,25 @@ class AdaptedStream:
     @property
     def older(self) -> Sequence[Element]:
         """What the adapter is still to be told before what arrives."""
-        return tuple(element for _, element in self._older)
+        return tuple(element for _, element in self._older or ())
 
     @property
     def period(self) -> Duration | None:
         """The sample period in force, if the stream is sampled."""
         return self._adapter.period if isinstance(self._adapter, VariesPeriod) else None
 
+    @property
+    def delays(self) -> Delays:
+        """The delays of the samples that were handed on."""
+        delays = self._generator.delays
+        if self._made is not None:
+            delays = delays.plus(self._made)
+        return delays if self._left_out is None else delays.minus(self._left_out)
+
     def copied(self, begin: TimePoint) -> Beginning:
         """Return what a stream begins with that is the same as this one up to now."""
         adapter = deepcopy(self._adapter)
-        tally = self.tally.copy()
-        return Beginning(begin, adapter, self.waiting, self.older, tally, self.last)
+        return Beginning(begin, adapter, self.waiting, self.older, self)
 
     def set_period(self, period: Duration, begin: TimePoint) -> None:
         """Go on with another sample period that the policy allows, from *begin* on."""
@@ -172,11 +225,16 @@ class AdaptedStream:
         if not self._members:
             self._end()
 
+    def deepen(self) -> None:
+        """Have turns after those of the generator's process, which has become deeper."""
+        if self._ticket is not None:
+            self._agenda.move(self._ticket, 2 * self._generator.depth + 1)
+
     def turn(self, now: TimePoint) -> None:
         """Hand on what has become available and let the adapter's alarm ring."""
         while self._waiting and self._waiting[0].available_time <= now:
             self._agenda.pending -= 1
-            self._hand_out(self._waiting.popleft())
+            self._hand_out(self._waiting.pop(0))
         if self._is_behind:
             self._take_older(now)
         due = self._adapter.due()
@@ -188,23 +246,23 @@ class AdaptedStream:
         """Receive from the generator; in the queue, if there is something older to be done."""
         self._is_behind = bool(self._older or self._waiting)
         if self._is_behind:
-            self._generator.connect(self, self._queue, self._queue)
+            self._generator.connect(self, self._receive_behind, self._queue)
         else:
             self._generator.connect(self, self._receive, self._beat)
 
     def _receive(self, sample: Sample[Any]) -> None:
         """Take in a sample of the generator."""
-        # The body of `_hand_on` and `_hand_out` once more: this is done for every sample of
-        # every stream.
-        now = sample.available_time
-        for adapted in self._push(sample):
-            if adapted.available_time > now:
-                self._wait_for(adapted, now)
-            else:
-                self.last = adapted
-                self._note(adapted)
-                for receive in self._receivers:
-                    receive(adapted)
+        adapted = self._push(sample)
+        if len(adapted) == 1 and adapted[0] is sample:
+            # Nearly always: the shortest way, since this is done for every sample and stream.
+            if self.last is None:
+                self.first = sample.valid_time
+            self.last = sample
+            for receive in self._receivers:
+                receive(sample)
+        else:
+            self._leave_out(sample)
+            self._hand_on(adapted, sample.available_time)
         if self._noticed:
             self._publish()
         if self._has_alarms:
@@ -216,9 +274,16 @@ class AdaptedStream:
         self._hand_on(self._adapter.beat(heartbeat), heartbeat.available_time)
         self._plan()
 
+    def _receive_behind(self, sample: Sample[Any]) -> None:
+        """Take in a sample of the generator after all that is older."""
+        self._leave_out(sample)
+        self._queue(sample)
+
     def _queue(self, element: Element) -> None:
         """Keep an element until the older ones before it have been taken in."""
         self._reached = max(element.available_time, TimePoint(self._reached + 1))
+        if self._older is None:
+            self._older = deque()
         self._older.append((self._reached, element))
         self._agenda.pending += 1
 
@@ -226,20 +291,27 @@ class AdaptedStream:
         while self._older and self._older[0][0] <= now:
             self._agenda.pending -= 1
             time, element = self._older.popleft()
-            element = replace(element, available_time=time)
             if isinstance(element, Heartbeat):
-                self._beat(element)
+                self._beat(Heartbeat(element.until, time))
             else:
-                self._receive(element)
+                sample = Sample(element.value, element.valid_time, time)
+                self._hand_on(self._push(sample), time)
         if not self._older and not self._waiting:
+            self._older = None
             self._connect()
+
+    def _leave_out(self, sample: Sample[Any]) -> None:
+        """Count a sample of the generator that is not handed on, or not as it is."""
+        if self._left_out is None:
+            self._left_out = Delays()
+        self._left_out.add(sample.available_time - sample.valid_time)
 
     def _take_since(self) -> None:
         """Queue what the generator has handed out since this stream was made."""
         last, until = self._seen
         generator = self._generator
         if generator.last is not None and generator.last is not last:
-            self._queue(generator.last)
+            self._receive_behind(generator.last)
         if generator.complete_until > until:
             self._queue(Heartbeat(generator.complete_until, self._reached))
 
@@ -254,18 +326,23 @@ class AdaptedStream:
 
     def _hand_out(self, element: Element) -> None:
         if isinstance(element, Heartbeat):
-            self.tally.heartbeats += 1
+            self.heartbeats += 1
             for beat in self._beats.values():
                 beat(element)
         else:
+            if self.last is None:
+                self.first = element.valid_time
             self.last = element
-            self._note(element)
+            if self._made is None:
+                self._made = Delays()
+            self._made.add(element.available_time - element.valid_time)
             for receive in self._receivers:
                 receive(element)
 
     def _publish(self) -> None:
         for violation in self._adapter.take_violations():
-            self.tally.note_violation(violation)
+            self.violations += 1
+            self.late += violation.sample is not None
             for member in self._members:
                 member.publish(violation)
 
@@ -292,9 +369,9 @@ class AdaptedStream:
 
     def _end(self) -> None:
         self._generator.disconnect(self)
-        self._agenda.pending -= len(self._waiting) + len(self._older)
+        self._agenda.pending -= len(self._waiting) + len(self._older or ())
         self._waiting.clear()
-        self._older.clear()
+        self._older = None
         if self._ticket is not None:
             self._agenda.leave(self._ticket)
             self._ticket = None

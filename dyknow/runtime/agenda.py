@@ -77,15 +77,14 @@ class Agenda:
         del self._tickets[ticket.number]
         if ticket.wake_at is not None:
             ticket.wake_at = None
-            self._n_void += 1
-            self._tidy()
+            self._void_one()
 
     def move(self, ticket: Ticket, priority: int) -> None:
         """Give the participant another priority."""
         ticket.priority = priority
         if ticket.wake_at is not None:
             heappush(self._entries, (ticket.wake_at, priority, ticket.number))
-            self._n_void += 1
+            self._void_one()
 
     def wake(self, ticket: Ticket, time: TimePoint) -> None:
         """Plan a turn at *time*, or leave an earlier one that is planned already."""
@@ -93,6 +92,8 @@ class Agenda:
         if planned is None or time < planned:
             ticket.wake_at = time
             heappush(self._entries, (time, ticket.priority, ticket.number))
+            if planned is not None:
+                self._void_one()
 
     def extend(self, wanted: TimePoint, given: TimePoint) -> None:
         """Let the current run work until *given*, if *wanted* belongs to it.
@@ -110,7 +111,7 @@ class Agenda:
             if self._is_planned(entries[0]):
                 return entries[0][0]
             heappop(entries)
-        self._n_void = 0
+            self._n_void -= 1
         return None
 
     def hold_instant(self, now: TimePoint) -> None:
@@ -123,10 +124,16 @@ class Agenda:
             if ticket is not None and ticket.wake_at == now and ticket.priority == priority:
                 ticket.wake_at = None
                 ticket.participant.turn(now)
+            else:
+                self._n_void -= 1
 
-    def _tidy(self) -> None:
+    def _void_one(self) -> None:
+        """Take note that an entry means nothing any more; throw such entries out in time."""
+        self._n_void += 1
         if 2 * self._n_void > len(self._entries):
-            self._entries[:] = [entry for entry in self._entries if self._is_planned(entry)]
+            # As a set, since a turn may have been planned again for the time of a void entry.
+            planned = {entry for entry in self._entries if self._is_planned(entry)}
+            self._entries[:] = planned
             heapify(self._entries)
             self._n_void = 0
 

@@ -1,13 +1,13 @@
 """How a stream begins: fresh, with samples of the past, or in the place of another one."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from typing import Any, Protocol
 
 from dyknow.errors import PolicyNotSupportedError
 from dyknow.runtime.cache import NEVER
 from dyknow.runtime.generators import StreamGenerator
-from dyknow.runtime.statistics import Tally
+from dyknow.runtime.statistics import Figures
 from dyknow.streams.adapter import Adapter, adapter_for
 from dyknow.streams.ordering import Filter
 from dyknow.streams.policy import Approximation, Policy
@@ -27,28 +27,18 @@ class Beginning:
         adapter: Makes the stream.
         waiting: What the adapter has handed on already and will be available later.
         older: What the adapter is to be told before what arrives.
-        tally: The figures from which the stream goes on.
-        last: The last sample that receivers have had from the stream before.
+        predecessor: The stream whose figures the new one goes on from.
     """
 
     begin: TimePoint
     adapter: Adapter
     waiting: Sequence[Element] = ()
     older: Sequence[Element] = ()
-    tally: Tally = field(default_factory=Tally)
-    last: Sample[Any] | None = None
+    predecessor: Figures | None = None
 
 
-class Begun(Protocol):
+class Begun(Figures, Protocol):
     """A stream that another one can continue."""
-
-    @property
-    def tally(self) -> Tally:
-        """The figures of the stream."""
-
-    @property
-    def last(self) -> Sample[Any] | None:
-        """The last sample that was handed on."""
 
     @property
     def waiting(self) -> Sequence[Element]:
@@ -111,7 +101,7 @@ def continuation(
             wanted = _next_wanted(generator, policy, begin, unsettled)
             _tell_silently(adapter, _before(wanted, last, policy, begin))
     older = [*unsettled, *_promise(generator, begin)]
-    return Beginning(begin, adapter, other.waiting, older, other.tally.copy(), other.last)
+    return Beginning(begin, adapter, other.waiting, older, other)
 
 
 def _adapter(policy: Policy, begin: TimePoint) -> Adapter:

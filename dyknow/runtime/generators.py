@@ -7,7 +7,7 @@ from typing import Any
 from dyknow.runtime.accounts import Account
 from dyknow.runtime.agenda import Agenda
 from dyknow.runtime.cache import CACHE_SIZE, NEVER, CachedStream, Label
-from dyknow.runtime.statistics import Statistics, Tally
+from dyknow.runtime.statistics import Delays, Statistics
 from dyknow.streams.policy import Policy
 from dyknow.streams.process import Element
 from dyknow.streams.sample import Heartbeat, Sample
@@ -37,10 +37,12 @@ class StreamGenerator(CachedStream):
         depth: How many processes lie between it and the sources; 0 for a source.
         output_policy: What its process promises about all that it produces.
         account: What its process has cost and given.
-        tally: The figures of the stream of all samples that have become available.
+        delays: The delays of all samples that have become available.
+        first: The valid time of the first sample that became available.
         complete_until: The valid time up to which its last heartbeat that became available
             promises no more samples; `NEVER` without one.
         last: The last sample that has become available.
+        heartbeats: How many heartbeats have become available.
     """
 
     __slots__ = (
@@ -52,10 +54,12 @@ class StreamGenerator(CachedStream):
         "_waiting",
         "account",
         "complete_until",
+        "delays",
         "depth",
+        "first",
+        "heartbeats",
         "last",
         "output_policy",
-        "tally",
     )
 
     def __init__(
@@ -70,7 +74,9 @@ class StreamGenerator(CachedStream):
         self.depth = depth
         self.output_policy = output_policy
         self.account = Account()
-        self.tally = Tally()
+        self.delays = Delays()
+        self.heartbeats = 0
+        self.first: TimePoint | None = None
         self.last: Sample[Any] | None = None
         self._agenda = agenda
         self._last_time = TimePoint(-1)
@@ -93,7 +99,17 @@ class StreamGenerator(CachedStream):
     @property
     def statistics(self) -> Statistics:
         """The figures of the whole stream, no policy applied."""
-        return self.tally.statistics
+        return Statistics.of(self)
+
+    @property
+    def violations(self) -> int:
+        """How often its policy could not be kept: it has none."""
+        return 0
+
+    @property
+    def late(self) -> int:
+        """How many samples were left out: none."""
+        return 0
 
     @property
     def n_receivers(self) -> int:
@@ -174,14 +190,16 @@ class StreamGenerator(CachedStream):
         self._agenda.pending += 1
 
     def _hand_out(self, sample: Sample[Any]) -> None:
+        if self.last is None:
+            self.first = sample.valid_time
         self.last = sample
         self._hold(sample)
-        self.tally.note(sample)
+        self.delays.add(sample.available_time - sample.valid_time)
         for receive in self._receivers.values():
             receive(sample)
 
     def _beat(self, heartbeat: Heartbeat) -> None:
-        self.tally.heartbeats += 1
+        self.heartbeats += 1
         self.complete_until = max(self.complete_until, heartbeat.until)
         for beat in self._beats.values():
             beat(heartbeat)

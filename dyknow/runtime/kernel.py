@@ -15,7 +15,12 @@ import time
 from collections.abc import Callable, Mapping, Sequence
 from types import MappingProxyType
 
-from dyknow.errors import LabelAlreadyExistsError, LabelInUseError, NoSuchLabelError
+from dyknow.errors import (
+    LabelAlreadyExistsError,
+    LabelInUseError,
+    NoSuchLabelError,
+    PolicyNotSupportedError,
+)
 from dyknow.runtime.accounts import Account
 from dyknow.runtime.agenda import Agenda
 from dyknow.runtime.changes import Changes
@@ -143,11 +148,12 @@ class Kernel:
         names = [provider for provider, _ in inputs]
         running = RunningUnit(unit, names, generator, on_failure, self._surroundings)
         self._add(running)
-        for at, (provider, (_, policy)) in enumerate(zip(providers, inputs, strict=True)):
-            receiver = Receiver(
-                label, at + 1, running.receiver(at), running.beat(at), generator.account
-            )
-            self._subscriptions.open(provider, receiver, policy)
+        try:
+            for at, (provider, (_, policy)) in enumerate(zip(providers, inputs, strict=True)):
+                self._subscriptions.open(provider, self._input(running, at), policy)
+        except PolicyNotSupportedError:
+            self.remove(label)
+            raise
 
     def add_input(self, label: Label, provider: Label, policy: Policy = ANYTHING) -> StreamProxy:
         """Let the unit of *label* take one more stream, which may end before the unit does.
@@ -167,10 +173,9 @@ class Kernel:
             raise TypeError(f"'{label}' is a source and takes no streams")
         if self._feeds(label, provider):
             raise ValueError(f"'{provider}' depends on '{label}', which cannot take its stream")
+        self._deepen(running, generator.depth + 1)
         at = running.add_input(provider)
-        account = running.account
-        receiver = Receiver(label, at + 1, running.receiver(at), running.beat(at), account)
-        return self._subscriptions.open(generator, receiver, policy)
+        return self._subscriptions.open(generator, self._input(running, at), policy)
 
     def remove_input(self, stream: StreamProxy) -> None:
         """Let a unit no longer take a stream that was added as an input."""
@@ -187,7 +192,7 @@ class Kernel:
             LabelInUseError: Others receive its samples.
         """
         generator = self.generator(label)
-        receivers = [proxy.receiver for proxy in self.streams if proxy.generator is generator]
+        receivers = [proxy.receiver for proxy in self._subscriptions.of(generator)]
         if receivers:
             raise LabelInUseError(label, receivers)
         process = self._processes.pop(label)
@@ -311,6 +316,19 @@ class Kernel:
             ahead.extend(new)
         return False
 
+    def _input(self, unit: RunningUnit, at: int) -> Receiver:
+        return Receiver(unit.label, at + 1, unit.receiver(at), unit.beat(at), unit.account)
+
+    def _deepen(self, process: RunningProcess, depth: int) -> None:
+        """Let a process, and all that it feeds, come after a process of less than *depth*."""
+        if process.depth < depth:
+            process.deepen(depth)
+            for proxy in self._subscriptions.of(process.generator):
+                if proxy.stream is not None:
+                    proxy.stream.deepen()
+                if proxy.number:
+                    self._deepen(self._processes[proxy.receiver], depth + 1)
+
     def _new_generator(self, label: Label, depth: int, output_policy: Policy) -> StreamGenerator:
         if label in self._processes:
             raise LabelAlreadyExistsError(label)
@@ -336,9 +354,8 @@ class Kernel:
         process.withdraw()
 
     def _end_inputs(self, label: Label) -> None:
-        for proxy in self.streams:
-            if proxy.receiver == label and proxy.number:
-                self._subscriptions.end(proxy)
+        for proxy in self._subscriptions.inputs_of(label):
+            self._subscriptions.end(proxy)
 
     def _publish(self, violation: StreamViolation) -> None:
         for receive in self._violation_receivers:

@@ -109,6 +109,11 @@ class RunningProcess:
     def turn(self, now: TimePoint) -> None:
         """Do what is due at *now*."""
 
+    def deepen(self, depth: int) -> None:
+        """Have turns after the processes of less than *depth* from now on."""
+        self.generator.depth = depth
+        self._agenda.move(self._ticket, 2 * depth)
+
     def withdraw(self) -> None:
         """Leave the network and forget what has not become available."""
         self.has_ended = True
@@ -179,7 +184,8 @@ class RunningSource(RunningProcess):
             self.generator.put(self._next, now)
             self._next = None
             self._agenda.wake(self._asking, now)
-        elif self._next is not None:
+        if self._next is not None:
+            # A turn may have come earlier, for a sample that had to wait.
             self._agenda.wake(self._ticket, self._next.available_time)
         self._plan_release()
 

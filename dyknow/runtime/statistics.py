@@ -2,18 +2,19 @@
 
 No list of samples or delays is kept: delays are counted in 64 bins of equal width, and when one
 does not fit, the width doubles and neighbouring bins become one. A percentile is therefore too
-long by at most a thirty-second part of the largest delay, and never longer than that one.
+long by at most a thirty-second part of the largest delay.
+
+Most samples of a generator reach its receivers as they are. So the delays are counted once, by
+the generator, and a stream counts only what is different: what it leaves out and what it makes.
 """
 
-from copy import deepcopy
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, Protocol
 
-from dyknow.streams.policy import Violation
 from dyknow.streams.sample import Sample
 from dyknow.time import SECOND, Duration, TimePoint
 
-__all__ = ["Delays", "Statistics", "Tally"]
+__all__ = ["Delays", "Figures", "Statistics"]
 
 _NONE = Duration(0)
 _N_BINS = 64
@@ -45,6 +46,50 @@ class Statistics:
     late: int = 0
     heartbeats: int = 0
 
+    @classmethod
+    def of(cls, figures: "Figures") -> "Statistics":
+        """Return the figures of a stream as they stand."""
+        delays, first, last = figures.delays, figures.first, figures.last
+        span = 0 if first is None or last is None else last.valid_time - first
+        return cls(
+            samples=delays.samples,
+            rate=(delays.samples - 1) * SECOND / span if span > 0 else 0.0,
+            mean_delay=delays.mean,
+            delay_99=delays.percentile(99),
+            largest_delay=Duration(delays.largest),
+            violations=figures.violations,
+            late=figures.late,
+            heartbeats=figures.heartbeats,
+        )
+
+
+class Figures(Protocol):
+    """What the statistics of a stream are made of."""
+
+    @property
+    def delays(self) -> "Delays":
+        """The delays of its samples."""
+
+    @property
+    def first(self) -> TimePoint | None:
+        """The valid time of its first sample."""
+
+    @property
+    def last(self) -> Sample[Any] | None:
+        """Its last sample."""
+
+    @property
+    def violations(self) -> int:
+        """How often the policy could not be kept."""
+
+    @property
+    def late(self) -> int:
+        """How many samples were left out against the wish of the policy."""
+
+    @property
+    def heartbeats(self) -> int:
+        """How many heartbeats there were."""
+
 
 class Delays:
     """How long things took: their number, sum, largest, and distribution.
@@ -53,16 +98,18 @@ class Delays:
         samples: How many delays have been added.
         total: Their sum.
         largest: The largest of them, or 0.
+        bins: How many delays are above 0, by their size in widths.
+        width: Of a bin, in nanoseconds.
     """
 
-    __slots__ = ("_bins", "_width", "largest", "samples", "total")
+    __slots__ = ("bins", "largest", "samples", "total", "width")
 
     def __init__(self) -> None:
         self.samples = 0
         self.total = 0
         self.largest = 0
-        self._bins = [0] * _N_BINS
-        self._width = _WIDTH
+        self.bins = [0] * _N_BINS
+        self.width = _WIDTH
 
     @property
     def mean(self) -> Duration:
@@ -76,88 +123,50 @@ class Delays:
         if delay > 0:
             if delay > self.largest:
                 self._let_in(delay)
-            self._bins[delay // self._width] += 1
+            self.bins[delay // self.width] += 1
 
     def percentile(self, percent: float) -> Duration:
         """Return a delay that *percent* of all do not exceed."""
         left = self.samples * (1 - percent / 100)
         for at in range(_N_BINS - 1, -1, -1):
-            left -= self._bins[at]
+            left -= self.bins[at]
             if left < 0:
-                return Duration(min((at + 1) * self._width, self.largest))
+                return Duration(min((at + 1) * self.width, self.largest))
         return Duration(0)
+
+    def copy(self) -> "Delays":
+        """Return the same figures once more."""
+        return self.plus(Delays())
+
+    def plus(self, other: "Delays") -> "Delays":
+        """Return the figures of both together."""
+        return self._combined(other, 1)
+
+    def minus(self, other: "Delays") -> "Delays":
+        """Return the figures without those of *other*, which are part of them.
+
+        The largest delay is then known only as well as the bins tell it.
+        """
+        rest = self._combined(other, -1)
+        highest = max((at for at in range(_N_BINS) if rest.bins[at]), default=-1)
+        rest.largest = min(self.largest, (highest + 1) * rest.width)
+        return rest
+
+    def _combined(self, other: "Delays", sign: int) -> "Delays":
+        both = Delays()
+        both.samples = self.samples + sign * other.samples
+        both.total = self.total + sign * other.total
+        both.largest = max(self.largest, other.largest)
+        both.width = max(self.width, other.width)
+        for part, weight in ((self, 1), (other, sign)):
+            step = both.width // part.width
+            for at, count in enumerate(part.bins):
+                both.bins[at // step] += weight * count
+        return both
 
     def _let_in(self, delay: int) -> None:
         self.largest = delay
-        while delay >= self._width * _N_BINS:
-            self._widen()
-
-    def _widen(self) -> None:
-        pairs = zip(self._bins[::2], self._bins[1::2], strict=True)
-        self._bins = [one + other for one, other in pairs] + [0] * (_N_BINS // 2)
-        self._width *= 2
-
-
-class Tally(Delays):
-    """The running figures of one stream.
-
-    Attributes:
-        first: The valid time of its first sample.
-        last: The valid time of its last sample.
-        violations: How often its policy could not be kept.
-        late: How many samples were left out against the wish of the policy.
-        heartbeats: How often it said that there is nothing more.
-    """
-
-    __slots__ = ("first", "heartbeats", "last", "late", "violations")
-
-    def __init__(self) -> None:
-        super().__init__()
-        self.first: TimePoint | None = None
-        self.last = TimePoint(0)
-        self.violations = 0
-        self.late = 0
-        self.heartbeats = 0
-
-    @property
-    def statistics(self) -> Statistics:
-        """The figures as they stand."""
-        return Statistics(
-            samples=self.samples,
-            rate=self._rate,
-            mean_delay=self.mean,
-            delay_99=self.percentile(99),
-            largest_delay=Duration(self.largest),
-            violations=self.violations,
-            late=self.late,
-            heartbeats=self.heartbeats,
-        )
-
-    def note(self, sample: Sample[Any]) -> None:
-        """Count a sample."""
-        valid_time = sample.valid_time
-        if self.first is None:
-            self.first = valid_time
-        self.last = valid_time
-        # As in `add`, which is not called because this is done for every sample of every stream.
-        delay = sample.available_time - valid_time
-        self.samples += 1
-        self.total += delay
-        if delay > 0:
-            if delay > self.largest:
-                self._let_in(delay)
-            self._bins[delay // self._width] += 1
-
-    def note_violation(self, violation: Violation) -> None:
-        """Count a violation."""
-        self.violations += 1
-        self.late += violation.sample is not None
-
-    def copy(self) -> "Tally":
-        """Return a tally that goes on from the same figures."""
-        return deepcopy(self)
-
-    @property
-    def _rate(self) -> float:
-        span = 0 if self.first is None else self.last - self.first
-        return (self.samples - 1) * SECOND / span if span > 0 else 0.0
+        while delay >= self.width * _N_BINS:
+            pairs = zip(self.bins[::2], self.bins[1::2], strict=True)
+            self.bins = [one + other for one, other in pairs] + [0] * (_N_BINS // 2)
+            self.width *= 2

@@ -11,13 +11,14 @@ from dyknow.runtime.agenda import Agenda
 from dyknow.runtime.beginnings import Beginning, beginning, continuation
 from dyknow.runtime.changes import Changes
 from dyknow.runtime.generators import ANYTHING, Beat, Label, Receive, StreamGenerator
-from dyknow.runtime.statistics import Statistics, Tally
+from dyknow.runtime.statistics import Statistics
 from dyknow.streams.policy import Policy, SampleEvery, Violation
 from dyknow.streams.refusal import refusal
 from dyknow.time import Duration, text_from_duration
 
 __all__ = ["Receiver", "StreamProxy", "StreamViolation", "Subscriptions", "ViolationReceiver"]
 
+K = TypeVar("K")
 T = TypeVar("T")
 
 
@@ -85,8 +86,8 @@ class StreamProxy:
     __slots__ = (
         "_account",
         "_own",
+        "_statistics",
         "_subscriptions",
-        "_tally",
         "_taps",
         "_violation_receivers",
         "beat",
@@ -118,7 +119,7 @@ class StreamProxy:
         self._taps: list[Tap] = []
         self._account = receiver.account
         self._subscriptions = subscriptions
-        self._tally: Tally | None = None
+        self._statistics = Statistics()
         self._violation_receivers: list[ViolationReceiver] = []
 
     def __repr__(self) -> str:
@@ -133,8 +134,7 @@ class StreamProxy:
     @property
     def statistics(self) -> Statistics:
         """The figures of the stream; a replaced policy goes on with them."""
-        tally = self._tally if self.stream is None else self.stream.tally
-        return Statistics() if tally is None else tally.statistics
+        return self._statistics if self.stream is None else Statistics.of(self.stream)
 
     @property
     def period(self) -> Duration | None:
@@ -208,7 +208,7 @@ class StreamProxy:
         """Receive *stream* from now on, or nothing, in place of what was received before."""
         if self.stream is not None:
             self.stream.leave(self)
-            self._tally = self.stream.tally.copy() if stream is None else None
+            self._statistics = Statistics.of(self.stream)
         self.stream = stream
         if stream is not None:
             stream.join(self)
@@ -248,6 +248,8 @@ class Subscriptions:
         self._agenda = agenda
         self._changes = changes
         self._proxies: dict[StreamProxy, None] = {}
+        self._of: dict[StreamGenerator, dict[StreamProxy, None]] = {}
+        self._inputs_of: dict[Label, dict[StreamProxy, None]] = {}
         self._epoch = changes.epoch
         self._shared: dict[StreamKey, AdaptedStream] = {}
 
@@ -255,6 +257,14 @@ class Subscriptions:
     def proxies(self) -> tuple[StreamProxy, ...]:
         """The streams, in the order in which they were asked for."""
         return tuple(self._proxies)
+
+    def of(self, generator: StreamGenerator) -> tuple[StreamProxy, ...]:
+        """Return the streams of a generator."""
+        return tuple(self._of.get(generator, ()))
+
+    def inputs_of(self, label: Label) -> tuple[StreamProxy, ...]:
+        """Return the streams that are inputs of a process."""
+        return tuple(self._inputs_of.get(label, ()))
 
     def check(self, generator: StreamGenerator, policy: Policy) -> None:
         """Raise a PolicyNotSupportedError if the process does not promise enough for *policy*."""
@@ -273,7 +283,7 @@ class Subscriptions:
         proxy = StreamProxy(self, generator, receiver, policy)
         begins_in_the_past = policy.start is not None and not generator.is_fresh
         stream = self._new_stream(generator, policy) if begins_in_the_past else None
-        self._proxies[proxy] = None
+        self._enter(proxy)
         self._changes.make(lambda: self._begin(proxy, stream))
         return proxy
 
@@ -297,8 +307,20 @@ class Subscriptions:
         """Hand a receiver nothing more."""
         if not proxy.has_ended:
             proxy.has_ended = True
-            del self._proxies[proxy]
+            self._strike_out(proxy)
             self._changes.make(lambda: self._attach(proxy, None))
+
+    def _enter(self, proxy: StreamProxy) -> None:
+        self._proxies[proxy] = None
+        self._of.setdefault(proxy.generator, {})[proxy] = None
+        if proxy.number:
+            self._inputs_of.setdefault(proxy.receiver, {})[proxy] = None
+
+    def _strike_out(self, proxy: StreamProxy) -> None:
+        del self._proxies[proxy]
+        _remove(self._of, proxy.generator, proxy)
+        if proxy.number:
+            _remove(self._inputs_of, proxy.receiver, proxy)
 
     def _begin(self, proxy: StreamProxy, stream: AdaptedStream | None) -> None:
         generator = proxy.generator
@@ -360,3 +382,9 @@ class Subscriptions:
         stream = AdaptedStream(generator, policy, self._agenda, beginning)
         self._shared[key] = stream
         return stream
+
+
+def _remove(index: dict[K, dict[StreamProxy, None]], key: K, proxy: StreamProxy) -> None:
+    del index[key][proxy]
+    if not index[key]:
+        del index[key]

@@ -46,7 +46,7 @@ class Adapter(ReportsViolations, Protocol):
     def held(self) -> Sequence[Sample[Any]]:
         """The samples that are kept back and may be handed on later."""
 
-    def push(self, sample: Sample[Any]) -> Iterable[Sample[Any]]:
+    def push(self, sample: Sample[Any]) -> Sequence[Sample[Any]]:
         """Take in a sample at its available time and yield what can be handed on."""
 
     def beat(self, heartbeat: Heartbeat) -> Iterable[Element]:
