@@ -10,7 +10,7 @@ __all__ = ["are_equal"]
 
 
 def are_equal(left: Any, right: Any) -> bool:
-    """Return whether two values are the same; arrays and tables are compared as a whole."""
+    """Return whether two values are the same; arrays, tables and mappings as a whole."""
     if left is right:
         return True
     match left, right:
@@ -20,6 +20,10 @@ def are_equal(left: Any, right: Any) -> bool:
             return left.dtype == right.dtype and _are_equal_arrays(left, right)
         case tuple(), tuple():
             return len(left) == len(right) and all(map(are_equal, left, right))
+        case dict(), dict():
+            return left.keys() == right.keys() and all(
+                are_equal(left[name], right[name]) for name in left
+            )
         case _:
             return _are_equal_simple(left, right)
 

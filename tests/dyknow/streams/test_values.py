@@ -27,8 +27,11 @@ def _table(**columns):
         (_table(x=[1.0, 2.0]), _table(x=[1.0, 3.0]), False),
         (_table(x=[1.0, 2.0]), _table(y=[1.0, 2.0]), False),
         (_table(x=[1.0, 2.0]), 3, False),
+        ({"x": np.array([1, 2])}, {"x": np.array([1, 2])}, True),
+        ({"x": np.array([1, 2])}, {"x": np.array([1, 3])}, False),
+        ({"x": 1}, {"x": 1, "y": 2}, False),
     ],
 )
 def test_values_are_equal_as_a_whole(left, right, expected):
-    """Arrays and tables are one value, and nothing equals a value of another kind."""
+    """Arrays, tables and mappings are one value, and nothing equals a value of another kind."""
     assert are_equal(left, right) is expected
