@@ -11,35 +11,71 @@ instant, with the hook of the kernel:
 """
 
 from dyknow.inspection.snapshot import Kind, ProcessFigures, Snapshot, StreamFigures
-from dyknow.kpl.plan import Network
-from dyknow.runtime.kernel import Kernel
+from dyknow.kpl.description import GeneratorDescription, NetworkDescription
+from dyknow.kpl.network import Network
+from dyknow.kpl.policies import text_from_policy
+from dyknow.runtime.kernel import OUTPUT, Kernel
 from dyknow.runtime.processes import RunningProcess
 from dyknow.runtime.subscriptions import StreamProxy
 
 __all__ = ["snapshot"]
 
+_NOTHING: NetworkDescription = {"generators": [], "outputs": []}
+
 
 def snapshot(of: Network | Kernel) -> Snapshot:
     """Return what the network, or the kernel that runs it, looks like now.
 
-    A kernel alone does not know how its processes are written, so that all of them but sources
-    are units without a text.
+    A kernel alone does not know how its processes are written: what is not a source is a unit
+    there, and has no text. So is a process that was added to the kernel of a network directly.
     """
-    kernel = of if isinstance(of, Kernel) else of.kernel
+    kernel, described = (of, _NOTHING) if isinstance(of, Kernel) else (of.kernel, of.description)
+    generators = {each["label"]: each for each in described["generators"]}
+    outputs = _Outputs(described)
     return Snapshot(
         now=kernel.now,
-        processes=tuple(_process(process) for process in kernel.processes.values()),
-        streams=tuple(_stream(proxy) for proxy in kernel.streams),
-        outputs=() if isinstance(of, Kernel) else of.outputs,
+        processes=tuple(
+            _process(process, generators.get(label)) for label, process in kernel.processes.items()
+        ),
+        streams=tuple(_stream(proxy, outputs) for proxy in kernel.streams),
+        outputs=tuple(output["name"] for output in described["outputs"]),
     )
 
 
-def _process(process: RunningProcess) -> ProcessFigures:
+class _Outputs:
+    """What the subscriptions of a network are called.
+
+    The kernel knows them all as `output`. Of outputs that differ in nothing but their names, the
+    first subscription gets the first name, the second one the second, and so on.
+    """
+
+    def __init__(self, described: NetworkDescription) -> None:
+        self._names: dict[tuple[str, str], list[str]] = {}
+        for output in described["outputs"]:
+            ends = (output["provider"], output["policy"])
+            self._names.setdefault(ends, []).append(output["name"])
+
+    def name_of(self, proxy: StreamProxy, policy: str) -> str:
+        """Return the name of the next subscription with the ends and the policy of *proxy*."""
+        names = self._names.get((proxy.provider, policy))
+        if proxy.number or proxy.receiver != OUTPUT or not names:
+            return proxy.receiver
+        names.append(names.pop(0))
+        return names[-1]
+
+
+def _process(process: RunningProcess, described: GeneratorDescription | None) -> ProcessFigures:
     account, generator = process.account, process.generator
     return ProcessFigures(
         label=process.label,
-        kind=Kind(process.kind.value),
+        kind=Kind(process.kind.value if described is None else described["kind"]),
+        text="" if described is None else described["process"],
         depth=process.depth,
+        policy=(
+            text_from_policy(process.output_policy)
+            if described is None
+            else described["output_policy"]
+        ),
         on_failure=process.on_failure.value,
         calls=account.calls,
         seconds=account.seconds,
@@ -52,13 +88,14 @@ def _process(process: RunningProcess) -> ProcessFigures:
     )
 
 
-def _stream(proxy: StreamProxy) -> StreamFigures:
-    figures = proxy.statistics
+def _stream(proxy: StreamProxy, outputs: _Outputs) -> StreamFigures:
+    figures, policy = proxy.statistics, text_from_policy(proxy.policy)
     has_delays = figures.samples > 0
     return StreamFigures(
         provider=proxy.provider,
-        receiver=proxy.receiver,
+        receiver=outputs.name_of(proxy, policy),
         number=proxy.number,
+        policy=policy,
         is_output=proxy.number == 0,
         samples=figures.samples,
         rate=figures.rate if figures.samples > 1 else None,

@@ -14,7 +14,7 @@ from dyknow.kpl.parser import parse_specification
 from dyknow.kpl.plan import Implementations, Network, build_network
 from dyknow.streams.process import Reactive
 from dyknow.streams.sample import Sample
-from dyknow.time import MILLISECOND, TimePoint
+from dyknow.time import MILLISECOND, Duration, TimePoint
 from traffic.benchmarks.measuring import undisturbed
 
 __all__ = [
@@ -30,7 +30,7 @@ __all__ = [
     "many_units",
 ]
 
-PERIOD = 100 * MILLISECOND
+PERIOD = Duration(100 * MILLISECOND)
 
 
 class Steady:

@@ -15,7 +15,6 @@ from traffic.benchmarks.results import (
     Experiment,
     Figure,
     Measurement,
-    Point,
     Published,
     Ratio,
 )
@@ -64,19 +63,18 @@ def show_benchmark(result: BenchmarkResult) -> None:
 
 
 def _curves(experiment: Experiment) -> Table:
-    title = f"{experiment.what}\n{experiment.y}, {experiment.unit}"
+    title = f"{experiment.what}\n{experiment.y}, {experiment.unit}: median (least to most)"
     table = Table(experiment.x, box=SIMPLE_HEAD, title=escape(title), title_justify="left")
     for series in experiment.series:
         table.add_column(escape(series.name), justify="right")
-        table.add_column("least to most", justify="right", style="dim")
     published = experiment.published
     if published is not None:
         table.add_column(escape(f"{published.source}, {published.unit}"), justify="right")
         table.caption = escape(published.remark)
     for at, point in enumerate(experiment.series[0].points):
         if _is_shown(at, len(experiment.series[0].points)):
-            points = [series.points[at] for series in experiment.series]
-            table.add_row(_number(point.x), *_cells(points), *_beside(point.x, published))
+            cells = [_cell(series.points[at].y) for series in experiment.series]
+            table.add_row(_number(point.x), *cells, *_beside(point.x, published))
     return table
 
 
@@ -85,8 +83,13 @@ def _is_shown(at: int, of: int) -> bool:
     return of <= _MANY or at % (of // _MANY) == 0 or at == of - 1
 
 
-def _cells(points: list[Point]) -> list[str]:
-    return [cell for point in points for cell in (_number(point.y.median), _spread(point.y))]
+def _cell(measurement: Measurement) -> str:
+    spread = _spread(measurement)
+    return (
+        f"{_number(measurement.median)} [dim]({spread})[/]"
+        if spread
+        else _number(measurement.median)
+    )
 
 
 def _beside(x: float, published: Published | None) -> list[str]:
@@ -97,20 +100,18 @@ def _beside(x: float, published: Published | None) -> list[str]:
 
 
 def _figures(figures: list[Figure]) -> Table:
-    table = Table("", "median", "least to most", "", "published", box=SIMPLE_HEAD)
+    table = Table("", "median (least to most)", "", "published", box=SIMPLE_HEAD)
     for figure in figures:
-        median, spread = _number(figure.value.median), _spread(figure.value)
         published = escape(figure.published or "")
-        table.add_row(escape(figure.name), median, spread, escape(figure.unit), published)
+        table.add_row(escape(figure.name), _cell(figure.value), escape(figure.unit), published)
     return table
 
 
 def _ratios(ratios: list[Ratio]) -> Table:
-    table = Table("peer", "takes … times as long", "least to most", "to", box=SIMPLE_HEAD)
+    table = Table("peer", "takes … times as long as DyKnow", "to", box=SIMPLE_HEAD)
     for ratio in ratios:
-        times = ratio.times_as_long
         peer = f"{ratio.peer} {ratio.version}"
-        table.add_row(escape(peer), _number(times.median), _spread(times), escape(ratio.what))
+        table.add_row(escape(peer), _cell(ratio.times_as_long), escape(ratio.what))
     return table
 
 

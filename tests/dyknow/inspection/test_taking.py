@@ -55,8 +55,10 @@ def test_a_network_that_has_not_run_has_no_figures():
         ("numbers", Kind.SOURCE, 0),
         ("copies", Kind.UNIT, 1),
     ]
+    assert [p.text for p in taken.processes] == ["src", "Copy(numbers with strict order)"]
     [stream] = taken.streams
     assert (stream.provider, stream.receiver, stream.number) == ("numbers", "copies", 1)
+    assert stream.policy == "strict order"
     assert (stream.samples, stream.rate, stream.mean_delay) == (0, None, None)
     assert taken.outputs == ("copies", "ordered")
 
@@ -74,6 +76,7 @@ def test_a_network_that_has_run_tells_what_happened():
     assert copies.rate == 5.0
     assert copies.mean_delay == round(ms(50) / 3)
     [ordered] = [stream for stream in taken.streams if stream.is_output]
+    assert (ordered.name, ordered.policy) == ("output/ordered", "max delay 100, monotone order")
     assert (ordered.samples, ordered.violations) == (3, 1)
     numbers, copy = taken.processes
     assert (numbers.samples, copy.samples, copy.calls) == (4, 3, 3)
@@ -132,3 +135,29 @@ def test_figures_are_those_of_the_samples(samples, order):
         assert figures.mean_delay == Duration(round(sum(delays) / len(delays)))
         least = delays[min(len(delays) - 1, round(0.99 * len(delays)))]
         assert figures.delay_99 >= min(least, delays[-1]) - 1
+
+
+def test_what_kpl_knows_has_a_name():
+    """Kinds of processes, and all outputs, are called as in the description of the network."""
+    text = """
+    source int src
+    strmgen one = src
+    strmgen two = src
+    strmgen both = merge(one, two)
+    stream both = both
+    stream states = sync(one, two)
+    stream again = both
+    """
+    sources = {"src": lambda: GivenSource("0:a")}
+
+    built = build_network(parse_specification(text), Implementations(sources=sources))
+    for output in built.outputs:
+        built.subscribe(output, lambda sample: None)
+
+    taken = snapshot(built)
+
+    kinds = {process.label: process.kind for process in taken.processes}
+    assert kinds["both"] is Kind.MERGING
+    assert kinds["sync(one, two)"] is Kind.SYNCHRONISATION
+    names = [stream.receiver for stream in taken.streams if stream.is_output]
+    assert sorted(names) == ["again", "both", "states"]
