@@ -27,7 +27,7 @@ from traffic.results import Replay, RunResult, StreamDifference, run_folder, wri
 from traffic.running import OnProgress, Watch, scorer_for, told_of, write_network
 from traffic.sumo.replayed import TRUTH
 from traffic.sumo.simulation import Frame, Simulation
-from traffic.system import read_specification
+from traffic.system import outputs_behind, read_specification
 
 __all__ = ["ReplayRequest", "replay"]
 
@@ -111,7 +111,8 @@ class _Replay:
             text, place = request.specification.read_text("utf-8"), str(request.specification)
         fed = take(request.taken, self._specification, recording)
         self._world = world_of(recording)
-        self._system = system_of(recording, fed, self._world)
+        outputs = outputs_behind(fed, request.taken) if request.taken else None
+        self._system = system_of(recording, fed, self._world, outputs)
         self._description = replace(
             self._recorded, text=text, place=place, outputs=self._system.network.outputs
         )

@@ -190,6 +190,7 @@ class RunResult(_Value):
         score: By kind of manoeuvre; empty if no truth is known.
         timing: How long it took.
         violations: How many violations of policies each stream had; without those that had none.
+        failures: The processes that failed and ended while the rest went on, a line each.
         replay: If the run was a replay, how it compares with what was recorded.
     """
 
@@ -200,6 +201,7 @@ class RunResult(_Value):
     score: dict[str, Score]
     timing: Timing
     violations: dict[str, int] = {}
+    failures: list[str] = []
     replay: Replay | None = None
 
 

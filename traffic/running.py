@@ -14,10 +14,11 @@ from dyknow.kpl.names import Declarations
 from dyknow.kpl.plan import Network
 from dyknow.kpl.syntax import Specification
 from dyknow.runtime.clock import WallClock
+from dyknow.runtime.failures import Failure
 from dyknow.runtime.subscriptions import StreamViolation
 from dyknow.streams.sample import Sample
 from dyknow.streams.table import Table
-from dyknow.time import MILLISECOND, SECOND, Duration, TimePoint
+from dyknow.time import MILLISECOND, SECOND, Duration, TimePoint, text_from_duration
 from networks.reading import read_road_map
 from perception.camera import Camera
 from traffic.errors import RequestError
@@ -136,6 +137,8 @@ class Watch:
         self._scorer = scorer if _CARS in outputs_of_sort(system.specification, _CARS) else None
         self._recognitions: list[Recognition] = []
         self._violations: Counter[str] = Counter()
+        self._last_violation: StreamViolation | None = None
+        self._failures: list[str] = []
         told = set(outputs_of_sort(system.specification, _RECOGNITIONS))
         self._outputs = [name for name in self._network.outputs if name in told]
         if self._scorer is not None:
@@ -143,6 +146,7 @@ class Watch:
         for output in self._outputs:
             self._network.subscribe(output, self._note)
         self._network.kernel.subscribe_violations(self._count)
+        self._network.kernel.subscribe_failures(self._report)
 
     def show(self, overlay: Overlay) -> None:
         """Let *overlay* receive what it shows.
@@ -202,6 +206,7 @@ class Watch:
                 lateness=_lateness(clock) if clock is not None else None,
             ),
             violations=dict(self._violations),
+            failures=self._failures,
         )
 
     def _verdict(self) -> Verdict:
@@ -214,7 +219,25 @@ class Watch:
         self._recognitions.extend(sample.value)
 
     def _count(self, violation: StreamViolation) -> None:
-        self._violations[f"{violation.provider} → {violation.receiver}"] += 1
+        """Count a violation; once, if several who are called alike have the stream."""
+        name, last = _name_of(violation), self._last_violation
+        self._last_violation = violation
+        is_known = last is not None and last.violation is violation.violation
+        if not (is_known and last is not None and _name_of(last) == name):
+            self._violations[name] += 1
+
+    def _report(self, failure: Failure) -> None:
+        at = text_from_duration(failure.time)
+        self._failures.append(f"process '{failure.label}' failed at {at} ms: {failure.text}")
+
+
+def _name_of(violation: StreamViolation) -> str:
+    """Return what a stream is called: an input by its number, an output by its provider."""
+    if violation.number:
+        return f"{violation.receiver}/{violation.number}"
+    if violation.receiver == violation.provider:
+        return violation.receiver
+    return f"{violation.provider} for {violation.receiver}"
 
 
 @contextmanager

@@ -5,7 +5,7 @@ module translates what the packages have into what their neighbours want, which 
 complete list of what flows between them.
 """
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Collection, Iterator, Mapping
 from dataclasses import dataclass, field, fields
 from functools import cache, partial
 from pathlib import Path
@@ -69,6 +69,7 @@ __all__ = [
     "image_labels",
     "implementations_of",
     "labels_of_sort",
+    "outputs_behind",
     "outputs_of",
     "outputs_of_sort",
     "read_specification",
@@ -273,6 +274,17 @@ def outputs_of(specification: Specification) -> tuple[str, ...]:
     )
 
 
+def outputs_behind(specification: Specification, labels: Collection[str]) -> tuple[str, ...]:
+    """Return the names of the output streams that are made of the streams of *labels*."""
+    sorts = _Sorts(specification)
+    features = {label.partition("[")[0] for label in labels}
+    return tuple(
+        output.name.text
+        for output in sorts.outputs
+        if sorts.features_behind(output.stream.provider) & features
+    )
+
+
 def outputs_of_sort(specification: Specification, sort: str) -> tuple[str, ...]:
     """Return the names of the output streams of *specification* that have this sort alone."""
     sorts = _Sorts(specification)
@@ -296,32 +308,55 @@ class _Sorts:
     """Which sorts of values flow where, as far as a specification says so by its own names."""
 
     def __init__(self, specification: Specification) -> None:
-        declarations = specification.declarations
+        declarations = list(descendants(specification.declarations))
         self.generators = [each for each in declarations if isinstance(each, GeneratorDeclaration)]
         self.outputs = [each for each in declarations if isinstance(each, StreamDeclaration)]
-        self._by_process = {
+        self._sort_by_process = {
             each.name.text: each.sort.name
             for each in declarations
             if isinstance(each, SourceDeclaration | UnitDeclaration)
         }
+        self._generators_by_feature: dict[str, list[GeneratorDeclaration]] = {}
+        for generator in self.generators:
+            self._generators_by_feature.setdefault(generator.label.feature.text, []).append(
+                generator
+            )
 
-    def of(self, node: Any, seen: frozenset[str] = frozenset()) -> frozenset[str]:
+    def of(self, node: Any) -> frozenset[str]:
         """Return the sorts of what a process or a provider gives, or of what that is made of."""
-        match node:
-            case SourceInstance(name) | UnitInstance(name) | Link(_, name):
-                return frozenset({self._by_process.get(name.text, "any")})
-            case Label(feature):
-                if feature.text in seen:
-                    return frozenset()
-                found = (
-                    self.of(each.process, seen | {feature.text})
-                    for each in self.generators
-                    if each.label.feature == feature
-                )
-            case _:
-                labels = (each for each in descendants(node) if isinstance(each, Label))
-                found = (self.of(label, seen) for label in labels)
-        return frozenset().union(*found)
+        if isinstance(node, SourceInstance | UnitInstance | Link):
+            return frozenset({self._sort_by_process.get(_process_name(node), ANY_SORT)})
+        reached: dict[str, frozenset[str]] = {}
+        self._reach(node, reached)
+        return frozenset().union(*reached.values())
+
+    def features_behind(self, node: Any, seen: frozenset[str] = frozenset()) -> frozenset[str]:
+        """Return the features of all generators that a process or a provider is made of."""
+        found = seen
+        for feature in _features_in(node) - seen:
+            found |= {feature}
+            for generator in self._generators_by_feature.get(feature, ()):
+                found = self.features_behind(generator.process, found)
+        return found
+
+    def _reach(self, node: Any, reached: dict[str, frozenset[str]]) -> None:
+        """Note the sorts of the processes that make the values of *node*, by their features."""
+        for feature in _features_in(node) - reached.keys():
+            reached[feature] = frozenset()
+            for generator in self._generators_by_feature.get(feature, ()):
+                process = generator.process
+                if isinstance(process, SourceInstance | UnitInstance | Link):
+                    reached[feature] |= self.of(process)
+                else:
+                    self._reach(process, reached)
+
+
+def _process_name(process: SourceInstance | UnitInstance | Link) -> str:
+    return (process.source if isinstance(process, SourceInstance) else process.unit).text
+
+
+def _features_in(node: Any) -> frozenset[str]:
+    return frozenset(each.feature.text for each in descendants(node) if isinstance(each, Label))
 
 
 def _sources(world: World) -> dict[str, Any]:

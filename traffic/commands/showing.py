@@ -55,11 +55,8 @@ def show_result(result: RunResult) -> None:
     if result.score:
         console.print(_scores({"": result.score}))
     console.print(_timing(result))
-    if result.violations:
-        console.print(_violations(result), highlight=False)
-    if result.replay is not None:
-        for line in _comparison(result.replay):
-            console.print(line, highlight=False)
+    for line in _remarks(result):
+        console.print(line, highlight=False)
 
 
 def show_scores(score_by_run: Mapping[str, Mapping[str, Score]]) -> None:
@@ -170,10 +167,20 @@ def _timing(result: RunResult) -> Table:
     return table
 
 
+def _remarks(result: RunResult) -> Iterator[str]:
+    """Yield what else is to be said after the tables."""
+    for failure in result.failures:
+        yield f"[red]{escape(failure)}[/]; it has ended"
+    if result.violations:
+        yield _violations(result)
+    if result.replay is not None:
+        yield from _comparison(result.replay)
+
+
 def _violations(result: RunResult) -> str:
     total = sum(result.violations.values())
     streams = ", ".join(f"{escape(name)} {count}" for name, count in result.violations.items())
-    return f"{total} violations of policies: {streams}"
+    return f"{total} {'violation' if total == 1 else 'violations'} of policies: {streams}"
 
 
 def _about(replay: Replay) -> Iterator[str]:

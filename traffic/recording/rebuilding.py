@@ -90,6 +90,7 @@ def system_of(
     recording: Recording,
     specification: Specification | None = None,
     world: World | None = None,
+    outputs: Sequence[str] | None = None,
 ) -> MonitoringSystem:
     """Return the system of a recorded run, fed with what was recorded.
 
@@ -101,20 +102,24 @@ def system_of(
         recording: The recording of a run.
         specification: Which processes and streams there are, if not those that were recorded. Of
             the recorded parameters it gets those that it has.
-        world: What surrounds the system; by default `world_of` the recording.
+        world: What surrounds the system, chance at its beginning; by default `world_of` the
+            recording.
+        outputs: The output streams that are wanted; by default those that were, or all but
+            images of a changed specification.
 
     Raises:
         ReplayError: It is not a recording of 'traffic run', or its network has changed.
         SpecificationErrors: The specification has faults, or a source that is not recorded.
     """
     description = describe(recording)
-    outputs = description.outputs if specification is None else outputs_of(specification)
+    if outputs is None:
+        outputs = description.outputs if specification is None else outputs_of(specification)
     specification = specification or description.specification
     declared = Declarations(specification).parameters
     return MonitoringSystem(
         world or world_of(recording),
         {name: value for name, value in description.parameters.items() if name in declared},
-        outputs,
+        tuple(outputs),
         specification=specification,
         sources=_recorded_sources(recording, specification),
     )
@@ -138,9 +143,10 @@ def take(
         if label not in declared or label not in known:
             names = [each for each in known if each in declared]
             nearest = nearest_name(label, names)
-            hint = f"; did you mean '{nearest}'?" if nearest else ""
-            expected = f"labels that are recorded, of {', '.join(names)}{hint}"
-            raise RequestError("--from", expected, label)
+            hint = f"'{nearest}' or another one of " if nearest else ""
+            raise RequestError(
+                "--from", f"labels that were recorded: {hint}{_listed(names)}", label
+            )
     replaced: dict[Declaration, tuple[Declaration, ...]] = {}
     for number, label in enumerate(labels):
         name = Name(f"recorded_{number}")
@@ -197,12 +203,14 @@ def _topics_of(source: str, specification: Specification) -> Iterator[str]:
 
 def _refuse(source: str, known: Sequence[str]) -> Source:
     nearest = nearest_name(source, known)
-    hint = f"; is it '{nearest}'?" if nearest else ""
-    labels = ", ".join(known) or "nothing"
+    hint = f" (did you mean '{nearest}'?)" if nearest else ""
     raise ValueError(
-        f"the source '{source}' was not recorded, but {labels}{hint}; "
-        "to compute from there on, take it --from the recording"
+        f"the source '{source}' was not recorded{hint}; the recording has {_listed(known)}"
     )
+
+
+def _listed(labels: Sequence[str]) -> str:
+    return ", ".join(labels) or "nothing"
 
 
 def _network_of(origin: Origin, path: Path) -> Path:

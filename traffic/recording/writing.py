@@ -64,7 +64,7 @@ def recorded(
     """
     labels, images = _wanted(request, system)
     with Recorder(request.path, metadata=description.as_metadata(), codecs=CODECS) as recorder:
-        recorder.attach(system.network.kernel, labels)
+        recorder.attach(system.network, labels)
         views = _Views(recorder, system.network)
         for label in images:
             views.add(label, "", CompressedImage, image_view)
