@@ -112,14 +112,18 @@ class Index:
     texts: dict[str, str] = field(default_factory=dict)
     format: str = ""
 
-    def add_metadata(self, path: Path, file: BinaryIO, entry: RecordEntry) -> None:
-        """Take in a metadata record.
+    def add_metadata(
+        self, path: Path, file: BinaryIO, entry: RecordEntry, name: str | None = None
+    ) -> None:
+        """Take in a metadata record, which must have a *name* if one is known.
 
         Raises:
             DamagedRecordingError: It is not what was written.
         """
         try:
             record = Metadata.read(stream_of(file, entry))
+            if name is not None and record.name != name:
+                raise ValueError("its name is wrong")
             if record.name == FORMAT_RECORD:
                 self.format = checked_texts(record.metadata)["format"]
             elif record.name == TEXTS_RECORD:
@@ -127,6 +131,14 @@ class Index:
         except (*_MALFORMED, KeyError) as fault:
             where = f"the metadata at byte {entry.start}"
             raise DamagedRecordingError(path, where, str(fault)) from fault
+
+    def _add_texts(self, record: Metadata, name: str) -> None:
+        if record.name != name:
+            raise ValueError("its name is wrong")
+        if name == FORMAT_RECORD:
+            self.format = checked_texts(record.metadata)["format"]
+        elif name == TEXTS_RECORD:
+            self.texts.update(checked_texts(record.metadata))
 
 
 def index_from_summary(path: Path, file: BinaryIO, size: int) -> Index | None:
@@ -146,7 +158,7 @@ def index_from_summary(path: Path, file: BinaryIO, size: int) -> Index | None:
             case ChunkIndex():
                 index.chunks.append(_chunk_entry(len(index.chunks) + 1, record))
             case MetadataIndex():
-                index.add_metadata(path, file, _entry(record.offset, record.length))
+                index.add_metadata(path, file, _entry(record.offset, record.length), record.name)
             case _:
                 pass
     return index
@@ -190,8 +202,12 @@ def _add_chunk(index: Index, path: Path, file: BinaryIO, entry: RecordEntry) -> 
 def _summary(file: BinaryIO, size: int) -> bytes | None:
     """Return the summary and the footer, if they are what was written."""
     footer_start = size - len(MAGIC) - _FOOTER_SIZE
-    footer_entry = entry_at(file, footer_start, size) if footer_start >= len(MAGIC) else None
-    if footer_entry is None or footer_entry.opcode != Opcode.FOOTER:
+    if footer_start < len(MAGIC):
+        return None
+    footer_entry = entry_at(file, footer_start, size)
+    if footer_entry is None or footer_entry != RecordEntry(
+        Opcode.FOOTER, footer_start + 9, size - len(MAGIC)
+    ):
         return None
     footer = Footer.read(stream_of(file, footer_entry))
     if not len(MAGIC) <= footer.summary_start < footer_start:

@@ -102,7 +102,7 @@ def recover(
         raise NotARecordingError(path, "an empty file")
     with path.open("rb") as file, mmap.mmap(file.fileno(), 0, access=mmap.ACCESS_READ) as view:
         found = _Found(path, file, view, size)
-        copy = _Copy(found, FileWriter(out))
+        copy = _Copy(found, FileWriter(out, partial=out.with_name(f"{out.name}.recovering")))
         try:
             for contents, end in found.chunks():
                 copy.add(contents)

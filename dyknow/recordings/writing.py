@@ -37,8 +37,10 @@ class FileWriter:
         add_message: Writes a message.
     """
 
-    def __init__(self, path: Path, chunk_size: int = CHUNK_SIZE) -> None:
-        """Begin a file.
+    def __init__(
+        self, path: Path, chunk_size: int = CHUNK_SIZE, partial: Path | None = None
+    ) -> None:
+        """Begin a file, which is called *partial* until it is closed; else `….partial`.
 
         Raises:
             RecordingExistsError: There is a file of this name, or its `.partial` one.
@@ -46,7 +48,7 @@ class FileWriter:
         if path.exists():
             raise RecordingExistsError(path)
         self.path = path
-        self._partial = partial_path(path)
+        self._partial = partial or partial_path(path)
         try:
             self._file = _Unbuffered(self._partial)
         except FileExistsError:
