@@ -127,6 +127,7 @@ class Recorder:
         topic: str,
         message_type: type[Message],
         convert: Callable[[Sample[Any]], Message | bytes | None],
+        about: Mapping[str, str] | None = None,
     ) -> ViewTap:
         """Return what writes, for viewers alone, what *convert* makes of samples.
 
@@ -135,13 +136,14 @@ class Recorder:
             message_type: What *convert* returns, as a message or as its bytes; or else None,
                 when a sample shows nothing.
             convert: Makes a message of a sample.
+            about: Texts about the view, for those who read the file.
 
         Raises:
             ValueError: There is a topic of this name already.
         """
         self._claim(topic)
         schema = message_type.DESCRIPTOR.full_name, schema_of_message(message_type)
-        metadata = Description(ChannelRole.VIEW, layout=None).as_metadata()
+        metadata = Description(ChannelRole.VIEW, layout=None, about=about or {}).as_metadata()
         return ViewTap(self._writer, self._writer.add_channel(topic, schema, metadata), convert)
 
     def violation(self, violation: StreamViolation) -> None:

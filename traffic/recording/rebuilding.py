@@ -205,7 +205,8 @@ def _refuse(source: str, known: Sequence[str]) -> Source:
     nearest = nearest_name(source, known)
     hint = f" (did you mean '{nearest}'?)" if nearest else ""
     raise ValueError(
-        f"the source '{source}' was not recorded{hint}; the recording has {_listed(known)}"
+        f"the source '{source}' was not recorded{hint}; the recording has {_listed(known)}; "
+        "'--from' begins with one of these"
     )
 
 

@@ -1,7 +1,8 @@
 """Writes a run to a file while it goes on."""
 
-from collections.abc import Callable, Collection, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
+from dataclasses import dataclass
 from typing import Any
 
 from foxglove_schemas_protobuf.CompressedImage_pb2 import CompressedImage
@@ -22,6 +23,7 @@ from traffic.errors import RequestError
 from traffic.recording.codecs import CODECS
 from traffic.recording.describing import COMPLETE, RunDescription
 from traffic.recording.views import (
+    JPEG_QUALITY,
     CarScenes,
     image_view,
     log_of_recognitions,
@@ -32,11 +34,18 @@ from traffic.recording.views import (
 from traffic.request import RecordingRequest
 from traffic.sumo.replayed import TRUTH, FrameKeeper
 from traffic.sumo.simulation import Frame, Simulation
-from traffic.system import IMAGE_SORTS, MonitoringSystem, image_labels, labels_of_sort
+from traffic.system import (
+    IMAGE_SORTS,
+    MonitoringSystem,
+    image_labels,
+    labels_of_sort,
+    sort_of,
+)
 
 __all__ = ["recorded"]
 
 _RECORDER = Label("recorder")
+_LOSSY = {"about": f"lossy: JPEG of quality {JPEG_QUALITY}, to be looked at; not for a replay"}
 _TRUTH_IS = "the truth, for scoring alone: no process may take it"
 
 Observe = Callable[[Frame], None]
@@ -62,13 +71,13 @@ def recorded(
         RequestError: A stream that is wanted is not part of the system.
         RecordingError: There is a file of this name.
     """
-    labels, images = _wanted(request, system)
+    wanted = _wanted(request, system)
     with Recorder(request.path, metadata=description.as_metadata(), codecs=CODECS) as recorder:
-        recorder.attach(system.network, labels)
+        recorder.attach(system.network, wanted.labels, wanted.without)
         views = _Views(recorder, system.network)
-        for label in images:
-            views.add(label, "", CompressedImage, image_view)
-        _add_scenes(views, system, set(labels))
+        for label in wanted.images:
+            views.add(label, CompressedImage, image_view, about=_LOSSY)
+        _add_scenes(views, system, wanted)
         show_map = recorder.view(
             "view/map", SceneUpdate, lambda sample: scene_of_map(sample.value)
         )
@@ -86,26 +95,41 @@ def _keeping(recorder: Recorder, simulation: Simulation | None) -> Observe:
     return lambda frame: truth(keeper.sample(frame))
 
 
-def _wanted(request: RecordingRequest, system: MonitoringSystem) -> tuple[list[str], list[str]]:
-    """Return the labels of the streams to be recorded, and of the images to be looked at."""
+@dataclass(frozen=True, slots=True)
+class _Wanted:
+    """What is to be recorded.
+
+    Attributes:
+        labels: Of the streams; None for all, also those that come while the network runs.
+        without: Of the streams that are not.
+        images: Of the images that are to be looked at.
+    """
+
+    labels: frozenset[str] | None
+    without: frozenset[str]
+    images: tuple[str, ...]
+
+    def has(self, label: str) -> bool:
+        """Return whether a stream is recorded."""
+        return label not in self.without and (self.labels is None or label in self.labels)
+
+
+def _wanted(request: RecordingRequest, system: MonitoringSystem) -> _Wanted:
+    """Return what is to be recorded, if all that was asked for can be."""
     built = [str(label) for label in system.network.kernel.labels]
-    asked = built if request.streams is None else list(request.streams)
-    for label in asked:
+    of_images = image_labels(system.specification) & frozenset(built)
+    single = labels_of_sort(system.specification, *IMAGE_SORTS)
+    images = tuple(label for label in single if label in built)
+    if request.streams is None:
+        return _Wanted(None, of_images, images if request.images else ())
+    for label in request.streams:
         if label not in built:
             raise RequestError("--streams", _expected(label, built), label)
-    of_images = image_labels(system.specification)
-    exact = [label for label in asked if label not in of_images]
-    single = [
-        label for label in labels_of_sort(system.specification, *IMAGE_SORTS) if label in built
-    ]
-    if request.images:
-        return exact, single
-    if request.streams is None:
-        return exact, []
-    for label in asked:
-        if label in of_images and label not in single:
+        if label in of_images and label not in images:
             raise RequestError("--streams", "labels of streams, or of single images", label)
-    return exact, [label for label in single if label in asked]
+    asked = frozenset(request.streams)
+    shown = tuple(label for label in images if request.images or label in asked)
+    return _Wanted(asked - of_images, of_images, shown)
 
 
 def _expected(label: str, built: Sequence[str]) -> str:
@@ -114,18 +138,24 @@ def _expected(label: str, built: Sequence[str]) -> str:
     return f"labels of this run, which has {', '.join(built)}{hint}"
 
 
-def _add_scenes(views: "_Views", system: MonitoringSystem, labels: Collection[str]) -> None:
+def _add_scenes(views: "_Views", system: MonitoringSystem, wanted: _Wanted) -> None:
     """Let viewers see the cameras, the cars and what was recognised, as far as is recorded."""
-    specification = system.specification
-    for label in labels_of_sort(specification, "camera_pose"):
-        if label in labels:
-            views.add(label, "", PoseInFrame, pose_of_camera)
-            views.add(label, "/transform", FrameTransform, transform_of_camera)
-    if "cars" in labels_of_sort(specification, "cars") and "cars" in labels:
-        views.add("cars", "", SceneUpdate, CarScenes().scene)
-    for label in labels_of_sort(specification, "recognitions"):
-        if label in labels:
-            views.add(label, "", Log, log_of_recognitions)
+    made = [
+        label
+        for label in labels_of_sort(system.specification, "camera_pose", "cars", "recognitions")
+        if wanted.has(label) and label in system.network.kernel.labels
+    ]
+    for label in made:
+        match sort_of(system.specification, label):
+            case "camera_pose":
+                views.add(label, PoseInFrame, pose_of_camera)
+                views.add(label, FrameTransform, transform_of_camera, part="/transform")
+            case "recognitions":
+                views.add(label, Log, log_of_recognitions)
+            case _ if label == "cars":
+                views.add(label, SceneUpdate, CarScenes().scene)
+            case _:
+                pass  # the same cars with further columns
 
 
 class _Views:
@@ -138,10 +168,12 @@ class _Views:
     def add(
         self,
         label: str,
-        part: str,
         kind: type[Message],
         convert: Callable[[Sample[Any]], Message | None],
+        *,
+        part: str = "",
+        about: Mapping[str, str] | None = None,
     ) -> None:
         """Let viewers see what *convert* makes of each sample of *label*."""
-        show = self._recorder.view(f"view/{label}{part}", kind, convert)
+        show = self._recorder.view(f"view/{label}{part}", kind, convert, about)
         self._kernel.subscribe(Label(label), show, name=_RECORDER)
