@@ -1,6 +1,6 @@
 """How figures are written for people: rates, delays, counts, and what they say of a stream."""
 
-from dyknow.inspection.snapshot import ProcessFigures, StreamFigures
+from dyknow.inspection.snapshot import Kind, ProcessFigures, StreamFigures
 from dyknow.time import MILLISECOND, SECOND
 
 __all__ = [
@@ -14,6 +14,7 @@ __all__ = [
     "stream_text",
 ]
 
+_NAMED = (Kind.SOURCE, Kind.UNIT)
 _KILO = 1_000
 _EXACT_BELOW = 100_000
 _THREE_DIGITS = 100
@@ -66,9 +67,12 @@ def pulse_text(stream: StreamFigures) -> str:
 
 
 def implementation_text(process: ProcessFigures) -> str:
-    """Write what a process is made of in a few words: `VisionPercepts`, or else its kind."""
+    """Write what a process is made of: `VisionPercepts`, `link WorldObject`, or else its kind."""
+    if process.kind is Kind.LINK:
+        units = (part.strip() for part in process.text.split(","))
+        return " ".join(["link", *(unit for unit in units if unit.isidentifier())])
     name = process.text.partition("(")[0].strip()
-    return name if name.isidentifier() else process.kind.value
+    return name if name.isidentifier() and process.kind in _NAMED else process.kind.value
 
 
 def process_text(process: ProcessFigures) -> str:

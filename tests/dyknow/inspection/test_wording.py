@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import pytest
 
+from dyknow.inspection.snapshot import Kind
 from dyknow.inspection.wording import (
     amount_text,
     count_text,
@@ -74,6 +75,24 @@ def test_streams_tell_everything():
     assert told.startswith("percepts[vision] with sample every 100 → cars/1\n")
     assert "99 % 80\u202fms" in told
     assert "1 late sample" in told
+
+
+@pytest.mark.parametrize(
+    ("kind", "text", "words"),
+    [
+        (Kind.SOURCE, "camera", "camera"),
+        (Kind.UNIT, "Vision(images, size = 3)", "Vision"),
+        (Kind.LINK, "link(\n    a with strict order,\n    Car,\n    maintain = true)", "link Car"),
+        (Kind.SYNCHRONISATION, "sync(a, b)", "synchronisation"),
+        (Kind.MERGING, "", "merging"),
+        (Kind.UNIT, "", "unit"),
+    ],
+)
+def test_what_a_process_is_made_of(kind, text, words):
+    """A unit and a source are called by their symbols, a link by the unit that it feeds."""
+    process = replace(small_network().processes[0], kind=kind, text=text)
+
+    assert implementation_text(process) == words
 
 
 def test_one_of_something_is_not_many():
