@@ -148,11 +148,7 @@ class Recorder:
 
     def violation(self, violation: StreamViolation) -> None:
         """Write that a policy has been violated in a stream."""
-        if self._violations is None:
-            description = Description(ChannelRole.VIOLATIONS)
-            layout = layout_of_violations()
-            self._violations = GeneratorTap(self._topic(VIOLATIONS, description, layout))
-        self._violations(sample_from_violation(violation))
+        self._violations_tap()(sample_from_violation(violation))
 
     def attach(
         self,
@@ -182,6 +178,7 @@ class Recorder:
         def is_wanted(label: str) -> bool:
             return (chosen is None or label in chosen) and label not in left_out
 
+        self._violations_tap()  # that there were none is worth knowing too
         attachment = Attachment(self, network, is_wanted)
         self._attachments.append(attachment)
         return attachment
@@ -202,6 +199,13 @@ class Recorder:
             generator.settle()
         for topic in self._topics.values():
             topic.open()
+
+    def _violations_tap(self) -> GeneratorTap:
+        if self._violations is None:
+            description = Description(ChannelRole.VIOLATIONS)
+            layout = layout_of_violations()
+            self._violations = GeneratorTap(self._topic(VIOLATIONS, description, layout))
+        return self._violations
 
     def _topic(self, name: str, description: Description, layout: Layout = EMPTY) -> Topic:
         self._claim(name)
