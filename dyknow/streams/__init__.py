@@ -8,7 +8,8 @@ Read in this order:
   questions about one stream; `domain`: what counts as a value, a sample, a stream
 - `process`: what sources and computational units are
 - `policy`: what a receiver requires of a stream; `refusal`: why a process cannot serve it
-- `adapter`, `ordering`, `sampling`: what makes a stream that keeps it, online
+- `adapter`, `ordering`, `sampling`, `most_recent`, with `grid`: what makes a stream that keeps it,
+  online
 - `conformance`: whether a finished stream keeps it; `approximation`, `maximality`, `content`: what
   such a stream may have, and what it must have
 - `selecting`: fields picked out of values; `viewing`: one object out of tables; `merging`: several

@@ -11,11 +11,12 @@ the duration, repetitions under `any change`, samples off the grid) is left out 
 from collections.abc import Iterable, Sequence
 from typing import Any, Protocol, runtime_checkable
 
+from dyknow.streams.most_recent import MostRecentSampler
 from dyknow.streams.ordering import Filter
 from dyknow.streams.policy import Approximation, Policy, Violation
 from dyknow.streams.process import Element
 from dyknow.streams.sample import Heartbeat, Sample
-from dyknow.streams.sampling import MostRecentSampler, Sampler
+from dyknow.streams.sampling import Sampler
 from dyknow.time import Duration, TimePoint
 
 __all__ = ["Adapter", "ReportsViolations", "VariesPeriod", "adapter_for"]
