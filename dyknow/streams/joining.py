@@ -7,12 +7,13 @@ return no input can hold up the others. With a sample period this is the samplin
 values with which section 7.8.1 of the thesis begins.
 """
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from typing import Any
 
 from dyknow.streams.policy import Violation
 from dyknow.streams.sample import NO_VALUE, Sample
-from dyknow.streams.state_policy import Occasion, StatePolicy
+from dyknow.streams.state_policy import CAPACITY, Occasion, Settling, StatePolicy
 from dyknow.streams.state_reports import StateReports, SynchronisationCounts
 from dyknow.streams.values import are_equal
 from dyknow.time import TimePoint
@@ -21,6 +22,14 @@ __all__ = ["Latest"]
 
 AT_EACH_ARRIVAL = StatePolicy()
 """A state whenever a sample arrives."""
+
+_WITHOUT_EFFECT: Mapping[str, Any] = {
+    "max_delay": None,
+    "delay_before_approximation": None,
+    "settling": Settling.EARLY,
+    "capacity": CAPACITY,
+}
+"""What a policy must leave as it is, since it would have no effect here."""
 
 
 class Latest:
@@ -45,7 +54,8 @@ class Latest:
     def __init__(self, names: Sequence[str], policy: StatePolicy = AT_EACH_ARRIVAL) -> None:
         """Join as many inputs as there are *names*.
 
-        Of *policy* the occasion, the sample period, the start and the end have a meaning here.
+        Of *policy* the occasion, the sample period, the start and the end have a meaning here;
+        that it uses most recent values goes without saying, and may be said.
 
         Raises:
             ValueError: The policy asks for something else, or for a grid without a period.
@@ -148,12 +158,11 @@ class Latest:
 
 def _faults(policy: StatePolicy) -> list[str]:
     """Return what the policy asks for that an available join does not do."""
-    allowed = StatePolicy(policy.occasion, policy.period, policy.start, policy.end)
     faults = []
-    if policy != allowed:
+    if policy.is_linear or replace(policy, **_WITHOUT_EFFECT) != policy:
         faults.append(
-            "a join of the latest values waits for nothing and approximates nothing: only the "
-            "change and the duration can be constrained"
+            "a join of the latest values waits for nothing and looks at nothing later: only "
+            "'use most recent', the change and the duration can be constrained"
         )
     if policy.is_sampled and policy.period is None:
         faults.append("states of the latest values need a sample period of their own")

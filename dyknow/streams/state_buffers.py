@@ -5,7 +5,6 @@ Knowledge Processing Middleware Framework*, section 7.8.2. Besides the policy of
 heartbeat can tell that no more information about a time-point will come.
 """
 
-from bisect import bisect_right
 from enum import Enum
 from typing import Any, Final
 
@@ -19,8 +18,6 @@ __all__ = ["FOREVER", "MISSING", "Buffer", "Category"]
 
 FOREVER: Final = END_OF_TIME
 """Later than every time-point: what is complete up to here has ended."""
-
-_LINEAR: Final = StateApproximation.LINEAR
 
 MISSING: Final = object()
 """What a buffer gives for a time-point of which it has neither a value nor an approximation."""
@@ -43,10 +40,10 @@ class Buffer:
     to be in monotone order: something must tell when it has said all about a time-point.
 
     Attributes:
+        number: The place of the input among the others, from 0.
         samples: In order of valid time, one for each valid time.
         complete: No sample to come has a valid time up to this one, as order and heartbeats tell.
         reached: The highest valid time of a sample so far, or a time-point before all others.
-        promised: Up to where the samples so far, by order and sample period, make it complete.
         heard: Up to where heartbeats have made it complete, other than the one at its end.
         first: The lowest valid time of a sample so far, or a time-point after all others.
         late: The last time-point that was settled while a sample for it could still come.
@@ -60,6 +57,8 @@ class Buffer:
         "_approximation",
         "_end",
         "_exact_needs",
+        "_is_linear",
+        "_keeps",
         "_lead",
         "complete",
         "first",
@@ -67,45 +66,51 @@ class Buffer:
         "is_final",
         "late",
         "max_delay",
+        "number",
         "period",
-        "promised",
         "reached",
         "samples",
     )
 
-    def __init__(self, policy: Policy, states: StatePolicy) -> None:
+    def __init__(self, policy: Policy, states: StatePolicy, number: int = 0) -> None:
         """Make an empty buffer of an input that keeps *policy*."""
+        self.number = number
         self.samples: list[Sample[Any]] = []
         self.complete = TimePoint(policy.first - 1)
-        self.reached = self.promised = self.heard = TimePoint(-1)
+        self.reached = self.heard = TimePoint(-1)
         self.first = FOREVER
         self.late = TimePoint(-1)
         self.is_final = False
         self.max_delay = policy.max_delay
         self.period = _exact_period(policy)
         self._approximation = states.approximation
+        self._is_linear = states.is_linear
+        self._keeps = states.is_approximated
         self._exact_needs = FOREVER if states.is_sampled else 1
         self._lead = _lead(policy)
         self._end = FOREVER if policy.end is None else policy.end
 
+    @property
+    def promised(self) -> TimePoint:
+        """Up to where the samples so far, by order and sample period, make the input complete."""
+        return TimePoint(-1) if self.reached < 0 else TimePoint(self.reached + self._lead)
+
     def add(self, sample: Sample[Any]) -> None:
         """Take in a sample that is in order; of two with one valid time the later one counts."""
-        valid_time, samples = sample.valid_time, self.samples
-        if not samples or samples[-1].valid_time < valid_time:
-            samples.append(sample)
+        valid_time = sample.valid_time
+        if valid_time > self.reached:
+            self.samples.append(sample)
         else:
             self._insert(sample)
         self.note(valid_time)
 
     def note(self, valid_time: TimePoint) -> None:
         """Take in that a sample of this valid time has come, whatever becomes of it."""
-        if valid_time > self.reached:  # noqa: PLR1730, `max` would take four times as long
+        if valid_time > self.reached:
             self.reached = valid_time
-        if valid_time < self.first:  # noqa: PLR1730
+            self._complete_to(TimePoint(valid_time + self._lead))
+        if valid_time < self.first:  # noqa: PLR1730, `min` would take four times as long
             self.first = valid_time
-        if self._lead is not None and valid_time + self._lead > self.promised:
-            self.promised = TimePoint(valid_time + self._lead)
-            self._complete_to(self.promised)
 
     def hear(self, until: TimePoint) -> None:
         """Take in that no sample to come has a valid time up to *until*."""
@@ -122,6 +127,12 @@ class Buffer:
             return self.complete
         return max(self.complete, TimePoint(now - self.max_delay))
 
+    def settles(self, time: TimePoint) -> bool:
+        """Return whether order, sample period and heartbeats tell that *time* is final."""
+        if self.complete >= time and not self._is_linear:
+            return True
+        return self.complete >= self.needed(time)
+
     def needed(self, time: TimePoint) -> TimePoint:
         """Return up to where the input must be complete for all to be known about *time*.
 
@@ -129,12 +140,15 @@ class Buffer:
         times of the inputs, nothing earlier may be missing either, or states would not be
         in order.
         """
-        at = bisect_right(self.samples, time, key=_valid_time)
-        if at and self.samples[at - 1].valid_time == time:
-            return TimePoint(time - self._exact_needs)
-        if self._approximation is not StateApproximation.LINEAR or at == 0:
+        samples = self.samples
+        if not samples or (samples[-1].valid_time < time and not self._is_linear):
             return time
-        return TimePoint(self.samples[at].valid_time - 1) if at < len(self.samples) else FOREVER
+        at = self._place(time)
+        if at and samples[at - 1].valid_time == time:
+            return TimePoint(time - self._exact_needs)
+        if not self._is_linear or at == 0:
+            return time
+        return TimePoint(samples[at].valid_time - 1) if at < len(samples) else FOREVER
 
     def awaited(self, time: TimePoint) -> TimePoint:
         """Return the valid time of the best sample for *time* that may still come."""
@@ -144,7 +158,7 @@ class Buffer:
 
     def category(self, time: TimePoint, now: TimePoint) -> Category:
         """Return what is known about *time* at *now*."""
-        at = bisect_right(self.samples, time, key=_valid_time)
+        at = self._place(time)
         if at and self.samples[at - 1].valid_time == time:
             return Category.EXACT
         is_final = self.complete_at(now) >= self.needed(time)
@@ -154,35 +168,35 @@ class Buffer:
 
     def has_value(self, time: TimePoint) -> bool:
         """Return whether there is a sample of exactly *time*, or something to stand for it."""
-        at = bisect_right(self.samples, time, key=_valid_time)
-        is_exact = at > 0 and self.samples[at - 1].valid_time == time
-        return is_exact or self._is_approximated(at)
+        samples = self.samples
+        if self._approximation is StateApproximation.MOST_RECENT:
+            return len(samples) > 0 and samples[0].valid_time <= time
+        at = self._place(time)
+        return (at > 0 and samples[at - 1].valid_time == time) or self._is_approximated(at)
 
     def value(self, time: TimePoint) -> Any:
         """Return the value or the approximation for *time*, or `MISSING`; forget what is older."""
         samples = self.samples
-        if len(samples) > 1 and samples[1].valid_time <= time:
-            self.forget(time)
+        while len(samples) > 1 and samples[1].valid_time <= time:
+            del samples[0]
         if not samples or samples[0].valid_time > time:
             return MISSING
         sample = samples[0]
-        if self._approximation is StateApproximation.NONE:
+        if not self._keeps:
             del samples[0]
             return sample.value if sample.valid_time == time else MISSING
-        if self._approximation is StateApproximation.MOST_RECENT or sample.valid_time == time:
-            return sample.value
-        return interpolate(sample, samples[1], time) if len(samples) > 1 else MISSING
+        if self._is_linear and sample.valid_time < time:
+            return interpolate(sample, samples[1], time) if len(samples) > 1 else MISSING
+        return sample.value
 
     def forget(self, time: TimePoint) -> None:
         """Forget the samples that no time-point from *time* on needs."""
-        at = bisect_right(self.samples, time, key=_valid_time)
-        if at > 1:
-            del self.samples[: at - 1]
+        del self.samples[: max(0, self._place(time) - 1)]
 
     def thin_out(self, origin: TimePoint, period: Duration) -> None:
         """Forget the last sample but one if no time-point of the grid needs it any more."""
         samples = self.samples
-        at = 3 if self._approximation is _LINEAR else 2
+        at = 3 if self._is_linear else 2
         if len(samples) < at or (samples[-2].valid_time - origin) % period == 0:
             return
         if _cell(samples[-at], origin, period) == _cell(samples[-1], origin, period):
@@ -198,8 +212,17 @@ class Buffer:
             case StateApproximation.LINEAR:
                 return 0 < at < len(self.samples)
 
+    def _place(self, time: TimePoint) -> int:
+        """Return how many samples are valid at or before *time*; that is one or two as a rule."""
+        at = 0
+        for sample in self.samples:
+            if sample.valid_time > time:
+                break
+            at += 1
+        return at
+
     def _insert(self, sample: Sample[Any]) -> None:
-        at = bisect_right(self.samples, sample.valid_time, key=_valid_time)
+        at = self._place(sample.valid_time)
         if at and self.samples[at - 1].valid_time == sample.valid_time:
             self.samples[at - 1] = sample
         else:
@@ -217,19 +240,15 @@ def _exact_period(policy: Policy) -> Duration | None:
     return change.period if isinstance(change, SampleEvery) and not change.deviation else None
 
 
-def _lead(policy: Policy) -> int | None:
-    """Return how far beyond the valid time of its last sample an input is complete, if known."""
+def _lead(policy: Policy) -> int:
+    """Return how far beyond the valid time of its last sample an input is complete."""
     if isinstance(policy.change, SampleEvery):
         return policy.change.period - policy.change.deviation - 1
     if policy.order is Order.ANY and policy.max_delay is not None:
-        return None
+        return -FOREVER
     return 0 if policy.order is Order.STRICT else -1
 
 
 def _cell(sample: Sample[Any], origin: TimePoint, period: Duration) -> int:
     """Return the number of the time-point on the grid at or after a sample."""
     return -((origin - sample.valid_time) // period)
-
-
-def _valid_time(sample: Sample[Any]) -> TimePoint:
-    return sample.valid_time

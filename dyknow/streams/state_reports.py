@@ -56,7 +56,9 @@ class StateReports:
     def out_of_order(self, at: int, sample: _Sample, reached: TimePoint) -> None:
         """Note a sample of input *at* that comes after the input had got further."""
         self.counts.out_of_order += 1
-        reason = f"{self._quoted([at])} is out of order: it has reached {_text(reached)}"
+        reason = (
+            f"{self._quoted([at])} is out of order: it has reached {text_from_duration(reached)}"
+        )
         self._left_out(Constraint.ORDER, sample, reason)
 
     def repeated(self, at: int, sample: _Sample) -> None:
@@ -71,7 +73,7 @@ class StateReports:
         delay = text_from_duration(sample.delay)
         reason = (
             f"{self._quoted([at])} is late by {delay}: "
-            f"states up to {_text(settled)} were made without it"
+            f"states up to {text_from_duration(settled)} were made without it"
         )
         self._left_out(Constraint.DELAY, sample, reason)
 
@@ -123,8 +125,4 @@ class StateReports:
     def _report(
         self, constraint: Constraint, valid_time: TimePoint, now: TimePoint, reason: str
     ) -> None:
-        self._violations.append(Violation(constraint, valid_time, now, reason))
-
-
-def _text(time: TimePoint) -> str:
-    return text_from_duration(time)
+        self._violations.append(Violation(constraint, valid_time, now, reason, definition="7.8.4"))

@@ -47,7 +47,11 @@ class Grid:
 
     def note(self, buffer: Buffer, valid_time: TimePoint) -> None:  # noqa: ARG002, the protocol's
         """Let the buffer forget what lies between two time-points and is of no use to either."""
-        if len(buffer.samples) > 1 and self._start != FOREVER:
+        samples = buffer.samples
+        is_dense = (
+            len(samples) > 1 and samples[-1].valid_time - samples[-2].valid_time < self._period
+        )
+        if is_dense and self._start != FOREVER:
             buffer.thin_out(self._start, self._period)
 
     def move_on(self) -> None:
@@ -84,9 +88,11 @@ class Updates:
     def note(self, buffer: Buffer, valid_time: TimePoint) -> None:  # noqa: ARG002, the protocol's
         """Take in that an input has a new sample for a state to come."""
         times = self._times
-        if not times or valid_time > times[-1]:
+        if times and times[-1] == valid_time:
+            return
+        if not times or times[-1] < valid_time:
             times.append(valid_time)
-        elif valid_time != times[-1]:
+        else:
             at = bisect_left(times, valid_time)
             if times[at] != valid_time:
                 times.insert(at, valid_time)

@@ -20,11 +20,13 @@ class Waiting:
     Attributes:
         time: The valid time, `FOREVER` if there is none.
         n_open: How many inputs can still say something about it.
+        newest: The highest valid time of a sample of any input.
     """
 
     def __init__(self, policy: StatePolicy, buffers: Sequence[Buffer]) -> None:
         self.time = FOREVER
         self.n_open = len(buffers)
+        self.newest = TimePoint(-1)
         self._buffers = buffers
         self._max_delay = FOREVER if policy.max_delay is None else policy.max_delay
         self._patience = policy.delay_before_approximation
@@ -43,18 +45,21 @@ class Waiting:
         """Wait for another valid time."""
         self.time = time
         self._deadline = None
-        self.n_open = 0
         if time == FOREVER:
             return
+        n_open = 0
         for buffer in self._buffers:
-            buffer.is_final = self._is_early and buffer.complete >= buffer.needed(time)
-            self.n_open += not buffer.is_final
+            is_final = self._is_early and buffer.settles(time)
+            buffer.is_final = is_final
+            if not is_final:
+                n_open += 1
+        self.n_open = n_open
 
     def look_at(self, buffer: Buffer) -> None:
         """Take in that an input has said something."""
-        if buffer.is_final:
+        if buffer.is_final or not self._is_early:
             return
-        if self._is_early and buffer.complete >= buffer.needed(self.time):
+        if buffer.settles(self.time):
             buffer.is_final = True
             self.n_open -= 1
             if buffer is self._critical:
@@ -64,13 +69,13 @@ class Waiting:
 
     def is_over(self, now: TimePoint) -> bool:
         """Return whether the state is to be made at *now*."""
-        if self.n_open and self.deadline() > now:
+        if self.n_open and (not self._has_alarms or self.deadline() > now):
             return False
         return self._is_passed() or (self.time <= now and self._exists())
 
     def due(self) -> TimePoint | None:
         """Return when there will be no more waiting, if that is known."""
-        if self.time == FOREVER or not self._exists():
+        if self.time == FOREVER or (self.n_open and not self._has_alarms) or not self._exists():
             return None
         deadline = self.deadline() if self.n_open else TimePoint(0)
         if deadline == FOREVER:
@@ -79,9 +84,7 @@ class Waiting:
 
     def deadline(self) -> TimePoint:
         """Return when open inputs are no longer waited for, `FOREVER` if always."""
-        if self._deadline is None and not self._has_alarms:
-            self._deadline = FOREVER
-        elif self._deadline is None:
+        if self._deadline is None:
             latest = TimePoint(-1)
             for buffer in self._buffers:
                 if not buffer.is_final:
@@ -102,7 +105,7 @@ class Waiting:
 
     def _is_passed(self) -> bool:
         """Return whether an input has a sample that is as late as the valid time."""
-        return any(buffer.reached >= self.time for buffer in self._buffers)
+        return self.newest >= self.time
 
     def _exists(self) -> bool:
         """Return whether the inputs go on as far as the valid time.
@@ -112,8 +115,8 @@ class Waiting:
         """
         if self._has_end or self._is_passed():
             return True
-        if all(self.time <= buffer.promised for buffer in self._buffers):
+        if not self._is_patient and any(buffer.complete < FOREVER for buffer in self._buffers):
             return True
         if any(self.time <= buffer.heard for buffer in self._buffers):
             return True
-        return not self._is_patient and any(b.complete < FOREVER for b in self._buffers)
+        return all(self.time <= buffer.promised for buffer in self._buffers)

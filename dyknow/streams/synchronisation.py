@@ -85,7 +85,7 @@ class Synchronisation:
             raise ValueError(f"expected {len(names)} policies of inputs, found {len(kept)}")
         self.names = tuple(names)
         self.policy = policy
-        self.buffers = tuple(Buffer(each, policy) for each in kept)
+        self.buffers = tuple(Buffer(each, policy, at) for at, each in enumerate(kept))
         self._grid = _grid(self.names, policy, kept) if policy.is_sampled else None
         self._times: Grid | Updates = self._grid or Updates()
         self._waiting = Waiting(policy, self.buffers)
@@ -95,7 +95,8 @@ class Synchronisation:
         self._settled = self._said = TimePoint(self._begins - 1)
         self._last: Sample[Any] | None = None
         self._has_begun = policy.start is not None or not policy.is_approximated
-        self._crowded: int | None = None
+        self._crowded: Buffer | None = None
+        self._capacity = policy.capacity
         self._waiting.turn_to(self._times.current)
 
     @property
@@ -110,9 +111,9 @@ class Synchronisation:
 
     def push(self, now: TimePoint, inputs: tuple[Sample[Any], ...]) -> list[Element]:
         """Take in the new samples among *inputs*; yield the states that can be made."""
-        for at, sample in enumerate(inputs):
+        for sample, buffer in zip(inputs, self.buffers, strict=True):
             if sample.available_time == now:
-                self._take(at, sample)
+                self._take(buffer, sample)
         return self._settle(now)
 
     def beat(self, now: TimePoint, at: int, heartbeat: Heartbeat) -> list[Element]:
@@ -142,34 +143,37 @@ class Synchronisation:
         """Return the violations noticed since this was last asked."""
         return self._reports.take()
 
-    def _take(self, at: int, sample: Sample[Any]) -> None:
-        buffer, valid_time = self.buffers[at], sample.valid_time
+    def _take(self, buffer: Buffer, sample: Sample[Any]) -> None:
+        valid_time = sample.valid_time
         if valid_time <= buffer.complete:
-            self._reports.out_of_order(at, sample, max(buffer.reached, buffer.heard))
+            self._reports.out_of_order(buffer.number, sample, max(buffer.reached, buffer.heard))
             return
+        waiting, times = self._waiting, self._times
         if self._settled < valid_time <= self._ends:
             buffer.add(sample)
-            self._times.note(buffer, valid_time)
-            if len(buffer.samples) > self.policy.capacity:
-                self._crowd(at, sample.available_time)
+            times.note(buffer, valid_time)
+            if len(buffer.samples) > self._capacity:
+                self._crowd(buffer, sample.available_time)
         else:
-            self._take_outside(at, sample)
-        if self._times.current == self._waiting.time:
-            self._waiting.look_at(buffer)
-        else:
-            self._waiting.turn_to(self._times.current)
+            self._take_outside(buffer, sample)
+        if valid_time > waiting.newest:  # noqa: PLR1730, `max` would take four times as long
+            waiting.newest = valid_time
+        if times.current != waiting.time:
+            waiting.turn_to(times.current)
+        elif not buffer.is_final:
+            waiting.look_at(buffer)
 
-    def _take_outside(self, at: int, sample: Sample[Any]) -> None:
+    def _take_outside(self, buffer: Buffer, sample: Sample[Any]) -> None:
         """Take in a sample that is not for a state to come, but may serve to approximate one."""
-        buffer, valid_time = self.buffers[at], sample.valid_time
+        valid_time = sample.valid_time
         if valid_time > self._ends:
             is_needed = self.policy.is_linear and buffer.reached <= self._ends
         else:
             is_needed = self.policy.is_approximated
             if valid_time <= buffer.late:
-                self._reports.late(at, sample, self._settled)
+                self._reports.late(buffer.number, sample, self._settled)
             elif valid_time >= self._begins and self._times.has(valid_time):
-                self._reports.repeated(at, sample)
+                self._reports.repeated(buffer.number, sample)
         if is_needed:
             buffer.add(sample)
             buffer.forget(self._settled)
@@ -178,21 +182,22 @@ class Synchronisation:
 
     def _settle(self, now: TimePoint) -> list[Element]:
         made: list[Element] = []
-        if self._grid is not None and self._grid.begins(self.buffers) <= now:
-            self._begin(self._grid)
-        while self._waiting.time <= self._ends and (
-            self._waiting.is_over(now) or self._is_crowded(now)
-        ):
-            made.extend(self._state(self._waiting.time, now))
-            self._times.move_on()
-            self._waiting.turn_to(self._times.current)
+        waiting, times, ends = self._waiting, self._times, self._ends
+        if waiting.time == FOREVER and self._grid is not None:
+            self._begin(self._grid, now)
+        while waiting.time <= ends and (waiting.is_over(now) or self._is_crowded(now)):
+            made.extend(self._state(waiting.time, now))
+            times.move_on()
+            waiting.turn_to(times.current)
         if self._settled > self._said:
             self._said = self._settled
             made.append(Heartbeat(self._settled, now))
         return made
 
-    def _begin(self, grid: Grid) -> None:
-        """Start the grid where the inputs do."""
+    def _begin(self, grid: Grid, now: TimePoint) -> None:
+        """Start the grid where the inputs do, if that is known by now."""
+        if grid.begins(self.buffers) > now:
+            return
         self._begins = grid.begin(self.buffers)
         self._settled = TimePoint(self._begins - 1)
         self._said = max(self._said, self._settled)
@@ -262,22 +267,22 @@ class Synchronisation:
 
     def _is_crowded(self, now: TimePoint) -> bool:
         """Return whether too many samples of an input wait; report it."""
-        at, capacity = self._crowded, self.policy.capacity
-        if at is None or len(self.buffers[at].samples) <= capacity:
+        crowded = self._crowded
+        if crowded is None or len(crowded.samples) <= self._capacity:
             self._crowded = None
             return False
-        self._reports.crowded(at, self._waiting.time, now, capacity)
+        self._reports.crowded(crowded.number, self._waiting.time, now, self._capacity)
         return True
 
-    def _crowd(self, at: int, now: TimePoint) -> None:
+    def _crowd(self, buffer: Buffer, now: TimePoint) -> None:
         """Note that too many samples wait; before states have begun, forget the oldest."""
-        buffer = self.buffers[at]
         if self._waiting.time != FOREVER:
-            self._crowded = at
+            self._crowded = buffer
             return
         buffer.forget(max(self._complete(), TimePoint(0)))
-        if len(buffer.samples) > self.policy.capacity:
-            self._reports.unused(at, buffer.samples.pop(0), now, self.policy.capacity)
+        if len(buffer.samples) > self._capacity:
+            oldest = buffer.samples.pop(0)
+            self._reports.unused(buffer.number, oldest, now, self._capacity)
 
     def _complete(self) -> TimePoint:
         """Return up to which valid time it is certain that no state will come."""

@@ -6,6 +6,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from dyknow.runtime.generators import Label
+from dyknow.runtime.kernel import Kernel
 from dyknow.streams.policy import Constraint, Order, Policy, SampleEvery
 from dyknow.streams.process import HearsHeartbeats
 from dyknow.streams.sample import END_OF_TIME, NO_VALUE, Heartbeat, Sample
@@ -24,7 +26,7 @@ from tests.support.states import (
     state_policies,
     timeless_states,
 )
-from tests.support.streams import ms, stream, text
+from tests.support.streams import GivenSource, ms, stream, text
 
 MOST_RECENT = StateApproximation.MOST_RECENT
 LINEAR = StateApproximation.LINEAR
@@ -449,6 +451,27 @@ def test_states_of_silent_inputs_come_as_time_passes():
     made = run_synchronisation(unit, streams, ms(25))
 
     assert _text(samples_of(made)) == "0:a 10:a 20:a"
+
+
+def test_states_in_a_network_hear_that_a_stream_is_silent():
+    """Heartbeats of a source, and its end, reach the states made of its stream, and go on."""
+    kernel = Kernel()
+    kernel.add_source(Label("a"), GivenSource(list(stream("0:a 10:b 20:c 50:d"))))
+    silent = [*stream("0:x"), Heartbeat(ms(15), ms(16)), Heartbeat(END_OF_TIME, ms(30))]
+    kernel.add_source(Label("b"), GivenSource(silent))
+    inputs = [(Label("a"), Policy()), (Label("b"), Policy())]
+    recent = StatePolicy(approximation=MOST_RECENT)
+    kernel.add_unit(Label("states"), Synchronisation("ab", recent), inputs)
+    again = [(Label("states"), Policy()), (Label("a"), Policy())]
+    kernel.add_unit(Label("both"), Synchronisation(["states", "a"]), again)
+    states, both = [], []
+    kernel.subscribe(Label("states"), states.append)
+    kernel.subscribe(Label("both"), both.append)
+
+    kernel.run(until=ms(100))
+
+    assert _text(states) == "0:ax 10:bx@16 20:cx@30 50:dx"
+    assert [state.valid_time for state in both] == [ms(0), ms(10), ms(20), ms(50)]
 
 
 # What cannot be asked for
