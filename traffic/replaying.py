@@ -1,7 +1,7 @@
 """One replay: the system of a recorded run, or a changed one, on what was recorded."""
 
 import tempfile
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -25,8 +25,7 @@ from traffic.recording.writing import recorded
 from traffic.request import RecordingRequest, labels_from
 from traffic.results import Replay, RunResult, StreamDifference, run_folder, write_result
 from traffic.running import OnProgress, Watch, scorer_for, told_of, write_network
-from traffic.sumo.replayed import TRUTH
-from traffic.sumo.simulation import Frame, Simulation
+from traffic.sumo.replayed import TRUTH, FramePacer
 from traffic.system import outputs_behind, read_specification
 
 __all__ = ["ReplayRequest", "replay"]
@@ -152,7 +151,7 @@ class _Replay:
         network = self._world.road_map, truth
         with recorded(wanted, self._description, self._system, *network) as keep:
             observers = [keep] if scorer is None else [keep, scorer.observe_frame]
-            truths = None if truth is None else _Truths(truth, observers)
+            truths = None if truth is None else FramePacer(truth, observers)
             return watch.complete(told, on_progress, truths, real_time=self._request.real_time)
 
     def _compare(self, computed: Recording) -> Replay:
@@ -199,41 +198,6 @@ class _Replay:
         if self._request.taken or self._is_changed:
             return (before & now) - fed - {VIOLATIONS}
         return (before | (now & {VIOLATIONS})) - fed
-
-
-class _Truths:
-    """Shows the recorded frames to those who know the truth, as the simulation did.
-
-    The simulation is asked for its next frame when all work at the time of the last one is done,
-    so that between two frames the later one is known.
-    """
-
-    def __init__(
-        self, simulation: Simulation, observers: Sequence[Callable[[Frame], None]]
-    ) -> None:
-        self._simulation = simulation
-        self._observers = observers
-        self._last = TimePoint(-1)
-        self._has_ended = False
-
-    def advance(self, now: TimePoint) -> None:
-        """Show the frames up to the first one that is not before *now*."""
-        while self._last < now and not self._has_ended:
-            self._show()
-
-    def finish(self) -> None:
-        """Show all other frames."""
-        while not self._has_ended:
-            self._show()
-
-    def _show(self) -> None:
-        frame = self._simulation.step()
-        if frame is None:
-            self._has_ended = True
-            return
-        self._last = frame.time
-        for observe in self._observers:
-            observe(frame)
 
 
 def _end_of(recording: Recording) -> TimePoint:

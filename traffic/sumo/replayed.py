@@ -4,14 +4,15 @@ What is kept holds the truth, so it stands in a stream of its own, which no proc
 only scoring reads it.
 """
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from typing import Any
 
 from dyknow.streams.sample import Sample
 from dyknow.streams.table import Table
+from dyknow.time import TimePoint
 from traffic.sumo.simulation import VEHICLE, Frame, Simulation
 
-__all__ = ["TRUTH", "FrameKeeper", "ReplayedSimulation"]
+__all__ = ["TRUTH", "FrameKeeper", "FramePacer", "ReplayedSimulation"]
 
 TRUTH = "truth/vehicles"
 """The name of the stream in which frames are kept."""
@@ -83,3 +84,42 @@ class ReplayedSimulation:
     def close(self) -> None:
         """End the replay."""
         self._samples = iter(())
+
+
+class FramePacer:
+    """Shows the frames of a replay to those who know the truth, at the pace of a run.
+
+    A simulation that feeds a network is asked for its next frame when all work at the time of
+    the last one is done. So, between two frames, the later one is known already.
+
+    Args:
+        simulation: Where the frames come from.
+        observers: Who is shown them.
+    """
+
+    def __init__(
+        self, simulation: Simulation, observers: Sequence[Callable[[Frame], None]]
+    ) -> None:
+        self._simulation = simulation
+        self._observers = observers
+        self._last = TimePoint(-1)
+        self._has_ended = False
+
+    def advance(self, now: TimePoint) -> None:
+        """Show the frames up to the first one that is not before *now*."""
+        while self._last < now and not self._has_ended:
+            self._show()
+
+    def finish(self) -> None:
+        """Show all other frames."""
+        while not self._has_ended:
+            self._show()
+
+    def _show(self) -> None:
+        frame = self._simulation.step()
+        if frame is None:
+            self._has_ended = True
+            return
+        self._last = frame.time
+        for observe in self._observers:
+            observe(frame)

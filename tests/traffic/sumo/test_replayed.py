@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 from dyknow.streams.table import Table
 from dyknow.streams.values import are_equal
 from dyknow.time import MILLISECOND, TimePoint
-from traffic.sumo.replayed import FrameKeeper, ReplayedSimulation
+from traffic.sumo.replayed import FrameKeeper, FramePacer, ReplayedSimulation
 from traffic.sumo.simulation import Frame
 
 VEHICLES = st.lists(st.sets(st.integers(0, 4)), max_size=6)
@@ -88,3 +88,20 @@ def test_a_closed_replay_is_over():
     replay.close()
 
     assert replay.step() is None
+
+
+@settings(derandomize=True, deadline=None, max_examples=100)
+@given(VEHICLES, st.lists(st.integers(0, 300), max_size=8).map(sorted))
+def test_frames_are_shown_at_the_pace_of_a_run(vehicles, instants):
+    """At an instant those are known that a source would have been asked for before it."""
+    frames: list[Frame] = []
+    pacer = FramePacer(Simulation(vehicles), [frames.append])
+    times = [40 * step for step in range(len(vehicles))]
+
+    for now in instants:
+        pacer.advance(TimePoint(now * MILLISECOND))
+        known = len([time for time in times if time < now]) + 1
+        assert [frame.time for frame in frames] == [t * MILLISECOND for t in times[:known]]
+    pacer.finish()
+
+    assert len(frames) == len(vehicles)
