@@ -111,7 +111,7 @@ def _judged(recording: Recording, path: Path | None, on_progress: OnProgress | N
     specification = description.specification if path is None else read_specification(path)
     outputs = _outputs(specification, description, path)
     build = _Builder(description, specification, outputs, world_of(recording))
-    network = declared_network(build, SORTS, build.said_again())
+    network = declared_network(build, SORTS, _SAID_AGAIN)
     until = TimePoint(description.origin.scenario.duration)
     execution = RecordedExecution(recording, outputs, until, without=(TRUTH,))
     return judge(network, execution, on_progress=on_progress)
@@ -169,14 +169,6 @@ class _Builder:
             sources=self._foreign,
         )
         return system.network
-
-    def said_again(self) -> frozenset[str]:
-        """Return the labels of sources that say the same whenever they are asked."""
-        return frozenset(
-            each["label"]
-            for each in self().description["generators"]
-            if each["kind"] == "source" and each["process"] in _SAID_AGAIN
-        )
 
     @staticmethod
     def _anew(world: World, description: RunDescription) -> World:

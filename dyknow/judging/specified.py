@@ -36,7 +36,7 @@ def declared_network(
     Args:
         make: Makes the network; its outputs are those that were asked for.
         sorts: What is wrong with values that are not of a sort, by the name of the sort.
-        again: The labels of sources that say the same whenever they are asked.
+        again: The symbols of sources that say the same whenever they are asked.
     """
     workshop = _Workshop(make)
     network = workshop.network
@@ -45,10 +45,11 @@ def declared_network(
     for label, running in network.kernel.processes.items():
         sort = described[label]["sort"]
         is_source = running.kind is Kind.SOURCE
+        is_said_again = is_source and described[label]["process"] in again
         processes[label] = DeclaredProcess(
             label,
             _inputs(network, label),
-            make_source=partial(workshop.source, label) if label in again else None,
+            make_source=partial(workshop.source, label) if is_said_again else None,
             make_unit=None if is_source else partial(workshop.unit, label),
             sort=sort,
             sort_test=sort_test(_sort(sort), sorts),
