@@ -45,6 +45,7 @@ class Buffer:
         complete: No sample to come has a valid time up to this one, as order and heartbeats tell.
         reached: The highest valid time of a sample so far, or a time-point before all others.
         heard: Up to where heartbeats have made it complete, other than the one at its end.
+        has_ended: Whether a heartbeat has told its end.
         first: The lowest valid time of a sample so far, or a time-point after all others.
         late: The last time-point that was settled while a sample for it could still come.
         is_final: Whether all is known about the time-point that is to be settled next; kept by
@@ -62,6 +63,7 @@ class Buffer:
         "_lead",
         "complete",
         "first",
+        "has_ended",
         "heard",
         "is_final",
         "late",
@@ -76,24 +78,30 @@ class Buffer:
         """Make an empty buffer of an input that keeps *policy*."""
         self.number = number
         self.samples: list[Sample[Any]] = []
-        self.complete = TimePoint(policy.first - 1)
-        self.reached = self.heard = TimePoint(-1)
+        self.complete = self.reached = self.heard = TimePoint(-1)
         self.first = FOREVER
         self.late = TimePoint(-1)
-        self.is_final = False
-        self.max_delay = policy.max_delay
-        self.period = _exact_period(policy)
+        self.is_final = self.has_ended = False
         self._approximation = states.approximation
         self._is_linear = states.is_linear
         self._keeps = states.is_approximated
         self._exact_needs = FOREVER if states.is_sampled else 1
-        self._lead = _lead(policy)
-        self._end = FOREVER if policy.end is None else policy.end
+        self.expect(policy)
 
     @property
     def promised(self) -> TimePoint:
         """Up to where the samples so far, by order and sample period, make the input complete."""
         return TimePoint(-1) if self.reached < 0 else TimePoint(self.reached + self._lead)
+
+    def expect(self, policy: Policy) -> None:
+        """Take in that the samples to come keep *policy*, whatever the earlier ones have kept."""
+        self.max_delay = policy.max_delay
+        self.period = _exact_period(policy)
+        self._lead = _lead(policy)
+        self._end = FOREVER if policy.end is None else policy.end
+        if not self.has_ended:
+            reached = TimePoint(self.reached + min(self._lead, 0))
+            self.complete = max(TimePoint(policy.first - 1), self.heard, reached)
 
     def add(self, sample: Sample[Any]) -> None:
         """Take in a sample that is in order; of two with one valid time the later one counts."""
@@ -114,7 +122,9 @@ class Buffer:
 
     def hear(self, until: TimePoint) -> None:
         """Take in that no sample to come has a valid time up to *until*."""
-        if until < FOREVER:
+        if until >= FOREVER:
+            self.has_ended = True
+        else:
             self.heard = max(self.heard, until)
         if self.period is not None and 0 <= self.reached <= until:
             steps = (until - self.reached) // self.period + 1

@@ -33,13 +33,16 @@ class Waiting:
         self._is_early = policy.settling is Settling.EARLY
         self._is_patient = policy.max_delay is None and self._patience is None
         self._has_end = policy.end is not None
-        self._has_alarms = (
-            policy.max_delay is not None
-            or policy.delay_before_approximation is not None
-            or any(buffer.max_delay is not None for buffer in buffers)
-        )
+        self._has_alarms = False
         self._deadline: TimePoint | None = None
         self._critical: Buffer | None = None
+
+    def begin(self, time: TimePoint) -> None:
+        """Wait for a first valid time, or anew after the inputs have changed what they keep."""
+        self._has_alarms = not self._is_patient or any(
+            buffer.max_delay is not None for buffer in self._buffers
+        )
+        self.turn_to(time)
 
     def turn_to(self, time: TimePoint) -> None:
         """Wait for another valid time."""
@@ -66,6 +69,11 @@ class Waiting:
                 self._deadline = None
         else:
             self._deadline = None
+
+    @property
+    def is_vain(self) -> bool:
+        """Whether all inputs have ended before the valid time, so that it will have no state."""
+        return all(b.complete >= FOREVER for b in self._buffers) and not self._exists()
 
     def is_over(self, now: TimePoint) -> bool:
         """Return whether the state is to be made at *now*."""

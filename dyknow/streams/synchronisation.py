@@ -97,7 +97,7 @@ class Synchronisation:
         self._has_begun = policy.start is not None or not policy.is_approximated
         self._crowded: Buffer | None = None
         self._capacity = policy.capacity
-        self._waiting.turn_to(self._times.current)
+        self._waiting.begin(self._times.current)
 
     @property
     def time(self) -> TimePoint | None:
@@ -127,6 +127,14 @@ class Synchronisation:
             self._said = complete
             made.append(Heartbeat(complete, now))
         return made
+
+    def expect(self, at: int, policy: Policy) -> None:
+        """Take in that from now on input number *at*, from 0, keeps another policy.
+
+        What has been settled because the old policy excluded better samples stays settled.
+        """
+        self.buffers[at].expect(policy)
+        self._waiting.begin(self._times.current)
 
     def advance(self, now: TimePoint) -> list[Element]:
         """Yield the states for which there is no more waiting at *now*."""
@@ -215,7 +223,7 @@ class Synchronisation:
             return ()
         self._has_begun = True
         if self.policy.is_linear:
-            self._report_gaps(values, now)
+            self._report_gaps(values, missing, now)
         state = Sample(tuple(values), time, now)
         if not self._is_wanted(state):
             return ()
@@ -244,13 +252,13 @@ class Synchronisation:
             self._reports.given_up(missing, self._settled, now)
         return self._grid is not None
 
-    def _report_gaps(self, values: Sequence[Any], now: TimePoint) -> None:
-        """Report inputs whose values have none in between."""
+    def _report_gaps(self, values: Sequence[Any], missing: Sequence[int], now: TimePoint) -> None:
+        """Report inputs that have values before and after, but none that lies between."""
         for at, value in enumerate(values):
-            if value is NO_VALUE and self.buffers[at].samples:
-                kind = type(self.buffers[at].samples[0].value)
-                if kind is not type(NO_VALUE):
-                    self._reports.not_interpolated(at, self._settled, now, kind)
+            if value is NO_VALUE and at not in missing:
+                ends = [sample.value for sample in self.buffers[at].samples[:2]]
+                if not any(end is NO_VALUE for end in ends):
+                    self._reports.not_interpolated(at, self._settled, now, type(ends[0]))
 
     def _is_wanted(self, state: Sample[Any]) -> bool:
         """Return whether the policy wants a state after the last one."""
@@ -286,6 +294,8 @@ class Synchronisation:
 
     def _complete(self) -> TimePoint:
         """Return up to which valid time it is certain that no state will come."""
+        if self._grid is not None and self._waiting.is_vain:
+            return FOREVER
         if self._waiting.time != FOREVER and self._grid is not None:
             complete = TimePoint(self._waiting.time - 1)
         elif self._grid is not None:

@@ -392,6 +392,31 @@ def test_values_that_cannot_be_interpolated_are_published():
     assert violation.reason == "values of 's1' cannot be interpolated, found str"
 
 
+def test_the_absence_of_a_value_is_not_interpolated():
+    """Next to an explicit absence there is none, which needs no report."""
+    unit = Synchronisation("ab", StatePolicy(approximation=LINEAR))
+    absent = [Sample(1, ms(0), ms(0)), Sample(NO_VALUE, ms(10), ms(10)), *stream("20:c")]
+
+    made = run_synchronisation(unit, [stream("0:x 5:y 10:z"), absent], ms(100))
+
+    assert [state.value[1] for state in samples_of(made)] == [1, NO_VALUE, NO_VALUE]
+    assert unit.take_violations() == []
+
+
+def test_an_input_may_come_to_keep_another_policy():
+    """When a stream is sampled more often from now on, its samples are not out of order."""
+    policy = StatePolicy(Occasion.SAMPLED, ms(50), start=ms(0), approximation=MOST_RECENT)
+    unit = Synchronisation("a", policy, [KEPT])
+    samples = stream("0:a 100:b 150:c 200:d")
+
+    made = run_synchronisation(unit, [samples[:2]], ms(149))
+    unit.expect(0, Policy(change=SampleEvery(ms(50))))
+    made += run_synchronisation(unit, [samples[2:]], ms(300))
+
+    assert _text(samples_of(made)) == "0:a 50:a 100:b 150:c 200:d"
+    assert unit.take_violations() == []
+
+
 # Heartbeats
 
 
@@ -429,6 +454,7 @@ def test_states_end_with_their_inputs():
     made = run_synchronisation(unit, streams, ms(1000))
 
     assert _text(samples_of(made)) == "0:a 10:a@25 20:a@25"
+    assert made[-1] == Heartbeat(END_OF_TIME, ms(30))
 
 
 def test_a_heartbeat_is_believed():
