@@ -66,6 +66,7 @@ class UnknownNameError(SpecificationError):
     def __init__(self, kind: str, name: str, span: Span, nearest: str | None = None) -> None:
         hint = f"; did you mean '{nearest}'?" if nearest else ""
         super().__init__(f"no {kind} called '{name}'{hint}", span)
+        self.name = name
 
 
 class DuplicateNameError(SpecificationError):

@@ -6,14 +6,15 @@ from pathlib import Path
 from chronicles import check as chronicle_check
 from chronicles.parser import parse_chronicles
 from dyknow.errors import SpecificationError
-from dyknow.kpl import check as kpl_check
-from dyknow.kpl.parser import parse_specification
+from dyknow.kpl.check import faults_of_text
+from dyknow.kpl.parser import read_specification
+from dyknow.kpl.unused import warnings
 from dyknow.mtl import check as formula_check
 from dyknow.mtl.parser import parse_formula
 from traffic.errors import RequestError, ScenarioError
 from traffic.scenarios import read_scenario
 
-__all__ = ["faults_of_file"]
+__all__ = ["faults_of_file", "warnings_of_file"]
 
 Faults = list[SpecificationError]
 
@@ -41,20 +42,24 @@ def faults_of_file(path: Path) -> list[str]:
         return [f"'{path}' is not a text in UTF-8"]
 
 
+def warnings_of_file(path: Path) -> list[str]:
+    """Return a text for each thing in a file without faults that may not be meant so.
+
+    These are the declarations of a specification that no output stream needs.
+    """
+    if path.suffix != ".kpl":
+        return []
+    reading = read_specification(path.read_text(encoding="utf-8"), str(path))
+    found = warnings(reading.specification)
+    return [f"{each.span.place}: warning: {each.message}\n{each.span.excerpt()}" for each in found]
+
+
 def _faults_of_scenario(path: Path) -> list[str]:
     try:
         read_scenario(path)
     except ScenarioError as error:
         return list(error.faults)
     return []
-
-
-def _faults_of_specification(text: str, name: str) -> Faults:
-    try:
-        specification = parse_specification(text, name)
-    except SpecificationError as error:
-        return [error]
-    return kpl_check.faults(specification)
 
 
 def _faults_of_chronicles(text: str, name: str) -> Faults:
@@ -72,7 +77,7 @@ def _faults_of_formula(text: str, name: str) -> Faults:
 
 
 _FAULTS_BY_ENDING: Mapping[str, Callable[[str, str], Faults]] = {
-    ".kpl": _faults_of_specification,
+    ".kpl": faults_of_text,
     ".chronicle": _faults_of_chronicles,
     ".mtl": _faults_of_formula,
 }

@@ -3,7 +3,8 @@
 Read in this order:
 
 - `syntax`: the classes of the syntax tree; `grammar.lark`: how it is written
-- `parser` and `printer`: from text to tree and back; `build`: trees made in Python
+- `parser` and `printer`: from text to tree and back; `recovery`, `wording`: what is said about
+  texts that do not follow the grammar; `build`: trees made in Python
 - `names`: what a specification declares, and what a label means; `parameters`: values and members
   in the places of names
 - `policies`: from constraints to a `Policy`; `settings`: what units are made with

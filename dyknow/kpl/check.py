@@ -18,6 +18,7 @@ from dyknow.kpl.cycles import cycles
 from dyknow.kpl.duplicates import duplicates, unfit_member
 from dyknow.kpl.names import Declarations, Placed, Scope, streams_of
 from dyknow.kpl.parameters import bind_parameters
+from dyknow.kpl.parser import Reading, read_specification
 from dyknow.kpl.printer import text_from
 from dyknow.kpl.promises import Promises
 from dyknow.kpl.settings import repeated_settings, setting_faults
@@ -46,7 +47,7 @@ from dyknow.kpl.syntax import (
 )
 from dyknow.source_text import nearest_name
 
-__all__ = ["check", "faults", "raise_faults"]
+__all__ = ["check", "faults", "faults_of_text", "raise_faults"]
 
 Faults = Iterator[SpecificationError]
 Units = Mapping[str, Callable[..., Any]]
@@ -96,6 +97,30 @@ def faults(
     found.extend(_Checker(declared, units or {}).faults())
     found.extend(cycles(declared))
     return sorted(found, key=lambda fault: fault.span.start)
+
+
+def faults_of_text(
+    text: str,
+    name: str = "<specification>",
+    values: Mapping[str, Value] | None = None,
+    units: Units | None = None,
+) -> list[SpecificationError]:
+    """Return every fault of a text: where it does not follow the grammar, and of all the rest.
+
+    What may be a fault only because a declaration could not be read is left out.
+    """
+    reading = read_specification(text, name)
+    found = faults(reading.specification, values, units)
+    certain = [fault for fault in found if not _may_follow(fault, reading)]
+    return sorted([*reading.faults, *certain], key=lambda fault: fault.span.start)
+
+
+def _may_follow(fault: SpecificationError, reading: Reading) -> bool:
+    """Return whether a fault may be there only for the sake of what could not be read."""
+    if isinstance(fault, UnknownNameError) and fault.name.split("[")[0] in reading.lost:
+        return True
+    spans = [(each.span.start, each.span.end) for each in reading.faults]
+    return any(fault.span.start <= end and start <= fault.span.end for start, end in spans)
 
 
 class _Checker:

@@ -3,81 +3,88 @@
 import json
 import re
 from collections.abc import Callable, Iterator
-from dataclasses import fields, is_dataclass, replace
+from dataclasses import dataclass, fields, is_dataclass, replace
 from functools import cache
+from math import isinf
 from pathlib import Path
 from typing import Any
 
 from lark import Lark, Token, Transformer, UnexpectedInput, UnexpectedToken, v_args
 from lark.ast_utils import create_transformer
-from lark.exceptions import UnexpectedCharacters, VisitError
+from lark.exceptions import UnexpectedCharacters
+from lark.parsers.lalr_interactive_parser import InteractiveParser
 from lark.tree import Meta
 
-from dyknow.errors import FormulaSyntaxError, KPLSyntaxError
+from dyknow.errors import (
+    FormulaSyntaxError,
+    KPLSyntaxError,
+    SpecificationError,
+    SpecificationErrors,
+)
 from dyknow.kpl import syntax
+from dyknow.kpl.recovery import MAX_DEPTH, Outline
 from dyknow.kpl.syntax import Constraint, Specification, Text, Value
+from dyknow.kpl.wording import wording_of
 from dyknow.mtl.parser import parse_formula
-from dyknow.mtl.syntax import Formula
+from dyknow.mtl.syntax import TRUE, Formula
 from dyknow.runtime.failures import OnFailure
-from dyknow.source_text import SourceText, Span
-from dyknow.time import Duration, duration_from_text
+from dyknow.source_text import SourceText, Span, nearest_name
+from dyknow.time import MILLISECOND, Duration, duration_from_text
 
-__all__ = ["parse_policy", "parse_specification", "parse_value"]
+__all__ = ["Reading", "parse_policy", "parse_specification", "parse_value", "read_specification"]
 
-_PHRASES = {
-    "$END": "the end of the text",
-    "AND_MORE": "', ...'",
-    "COUNT": "a whole number",
-    "FAILURE": "'end' or 'stop'",
-    "FIELD": "a field",
-    "FORMULA": "a formula",
-    "NAME": "a name",
-    "NUMBER": "a number",
-    "PATTERN": "a pattern",
-    "SETTING": "a setting",
-    "STRING": "a string",
-    "TIME": "a time",
-    "TIME_WITH_UNIT": "a time",
-    "OBJECT": "'object'",
-    "_COMMON_PERIOD": "'common period'",
-    "_THEN_CONSTRAINT": "','",
-    "_THEN_SETTING": "','",
-    "_ESTABLISH": "'establish ='",
-    "_SELECT": "'select'",
-    "_REESTABLISH": "'reestablish ='",
-    "_MAINTAIN": "'maintain ='",
-}
 _WORD = re.compile(r"\w+|\S")
 _CLOSED = re.compile(r"\[[^\[\]()]*[\])]")
+_WHOLE = re.compile(r"[+-]?\d+")
+_LARGEST = 1 << 63
+_OUTSIDE = frozenset({"COMPUNIT", "FOR", "PARAMETER", "SOURCE", "STREAM", "STRMGEN", "$END"})
+"""What can follow a declaration outside of blocks."""
+_BETWEEN = _OUTSIDE | {"RBRACE"}
+"""What can follow a declaration."""
+
+
+@dataclass(frozen=True)
+class Reading:
+    """What could be read of a text.
+
+    Attributes:
+        specification: The declarations that follow the grammar.
+        faults: Where the text does not, in reading order.
+        lost: Names that declarations which could not be read seem to declare.
+    """
+
+    specification: Specification
+    faults: tuple[SpecificationError, ...] = ()
+    lost: frozenset[str] = frozenset()
 
 
 def parse_specification(text: str, name: str = "<specification>") -> Specification:
     """Return the syntax tree of a KPL specification; *name* is what messages call the text.
 
     Raises:
-        KPLSyntaxError: The text does not follow the grammar.
-        FormulaSyntaxError: A condition of a link is not a formula.
+        SpecificationErrors: The text does not follow the grammar, in one or several places; the
+            faults are of the classes `KPLSyntaxError` and `FormulaSyntaxError`.
     """
+    reading = read_specification(text, name)
+    if reading.faults:
+        raise SpecificationErrors(f"{len(reading.faults)} fault(s)", reading.faults)
+    return reading.specification
+
+
+def read_specification(text: str, name: str = "<specification>") -> Reading:
+    """Return all that can be read of a text; behind a fault, from the next declaration on."""
     source = SourceText(name, text)
-    try:
-        tree = _parser().parse(text, start="specification")
-        specification: Specification = _transformer(source).transform(tree)
-    except UnexpectedInput as fault:
-        raise _syntax_error(fault, source) from None
-    except VisitError as fault:
-        raise fault.orig_exc from None
-    return specification
-
-
-def parse_value(text: str) -> Value:
-    """Read a value as KPL writes it: a number, a time, a name; any other text is a string."""
-    try:
-        tree = _parser().parse(text, start="value")
-        (value,) = _transformer(SourceText("<value>", text)).transform(tree)
-    except (UnexpectedInput, VisitError):
-        return Text(text)
-    found: Value = value
-    return found
+    outline = Outline(text)
+    if outline.too_deep is not None:
+        at = outline.too_deep
+        message = f"expected at most {MAX_DEPTH} brackets inside one another, found more"
+        return Reading(Specification(()), (KPLSyntaxError(message, Span(source, at, at + 1)),))
+    recovery = _Recovery(source, outline)
+    tree = recovery.tree()
+    leaves = _Leaves(source)
+    found = Specification(()) if tree is None else _transformer(leaves).transform(tree)
+    faults = sorted([*recovery.faults, *leaves.faults], key=lambda fault: fault.span.start)
+    return Reading(found, tuple(faults), frozenset(recovery.lost))
 
 
 def parse_policy(text: str, name: str = "<policy>") -> tuple[Constraint, ...]:
@@ -89,13 +96,28 @@ def parse_policy(text: str, name: str = "<policy>") -> tuple[Constraint, ...]:
     if not text.strip():
         return ()
     source = SourceText(name, text)
+    leaves = _Leaves(source)
     try:
         tree = _parser().parse(text, start="policy")
-        found: tuple[Constraint, ...] = _transformer(source).transform(tree)
     except UnexpectedInput as fault:
         raise _syntax_error(fault, source) from None
-    except VisitError as fault:
-        raise fault.orig_exc from None
+    found: tuple[Constraint, ...] = _transformer(leaves).transform(tree)
+    if leaves.faults:
+        raise leaves.faults[0]
+    return found
+
+
+def parse_value(text: str) -> Value:
+    """Read a value as KPL writes it: a number, a time, a name; any other text is a string."""
+    if Outline(text).too_deep is not None:
+        return Text(text)
+    leaves = _Leaves(SourceText("<value>", text))
+    try:
+        tree = _parser().parse(text, start="value")
+    except UnexpectedInput:
+        return Text(text)
+    (value,) = _transformer(leaves).transform(tree)
+    found: Value = Text(text) if leaves.faults else value
     return found
 
 
@@ -121,7 +143,84 @@ class _WholeWords:
         return stream
 
 
-def _transformer(source: SourceText) -> Transformer[Token, Any]:
+class _Recovery:
+    """Parses a text to its end, whatever is wrong with it.
+
+    Behind a fault it goes on with the next declaration, at the nearest level of blocks where one
+    may stand.
+
+    Attributes:
+        faults: In reading order.
+        lost: Names that declarations which were passed over seem to declare.
+    """
+
+    def __init__(self, source: SourceText, outline: Outline) -> None:
+        self.faults: list[SpecificationError] = []
+        self.lost: set[str] = set()
+        self._source = source
+        self._outline = outline
+        self._n_headless = 0
+
+    def tree(self) -> Any:
+        """Return the tree of all that follows the grammar, or None if there is nothing."""
+        parser = _parser().parse_interactive(self._source.text, start="specification")
+        while True:
+            try:
+                return parser.resume_parse()  # type: ignore[no-untyped-call]
+            except UnexpectedInput as error:
+                if not self._can_go_on(error, parser):
+                    return None
+
+    def _can_go_on(self, error: UnexpectedInput, parser: InteractiveParser) -> bool:
+        """Note a fault; take the parser to the next place where it may understand the text."""
+        at = _start(error, self._source)
+        self._note(error, at)
+        if at >= len(self._source.text.rstrip()):
+            return self._close(parser)
+        is_less = _withdraw(parser, _BETWEEN)
+        resumed_at = self._outline.next_resumption(at if is_less else at + 1)
+        self._n_headless += self._outline.count_openings(at, resumed_at)
+        if is_less:
+            self.lost.update(self._outline.names_declared(at, resumed_at))
+        _go_to(parser, resumed_at)
+        return True
+
+    def _note(self, error: UnexpectedInput, at: int) -> None:
+        if self._n_headless and self._source.text[at : at + 1] == "}":
+            self._n_headless -= 1  # it closes a block whose beginning was passed over
+        else:
+            self.faults.append(_syntax_error(error, self._source))
+
+    def _close(self, parser: InteractiveParser) -> bool:
+        """Take the parser out of all that is not finished, at the end of the text."""
+        end = len(self._source.text)
+        _withdraw(parser, _OUTSIDE)
+        self.lost.update(self._outline.names_declared(end, end))
+        _go_to(parser, end)
+        return True
+
+
+def _withdraw(parser: InteractiveParser, allowed: frozenset[str]) -> bool:
+    """Forget what is unfinished, until only *allowed* may follow; return whether there was any."""
+    state = parser.parser_state
+    is_less = False
+    while not set(parser.accepts()) <= allowed:  # type: ignore[no-untyped-call]
+        state.state_stack.pop()
+        state.value_stack.pop()
+        is_less = True
+    return is_less
+
+
+def _go_to(parser: InteractiveParser, at: int) -> None:
+    """Let the lexer read on at another place of the text."""
+    state = parser.lexer_thread.state
+    assert state is not None  # there is a text
+    state.line_ctr.char_pos = at
+
+
+def _transformer(leaves: "_Leaves") -> Transformer[Token, Any]:
+    source = leaves.source
+
     def with_span(*, inline: bool, meta: bool) -> Callable[[Any], Any]:  # noqa: ARG001 (lark)
         def build(node: Any, _rule: str, children: list[Any], place: Meta) -> Any:
             start, end = (0, 0) if place.empty else (place.start_pos, place.end_pos)
@@ -130,15 +229,23 @@ def _transformer(source: SourceText) -> Transformer[Token, Any]:
 
         return v_args(wrapper=build)
 
-    return create_transformer(syntax, _Leaves(source), with_span)
+    return create_transformer(syntax, leaves, with_span)
 
 
 class _Leaves(Transformer[Token, Any]):
-    """Turns tokens into values, and rules without a class into tuples."""
+    """Turns tokens into values, and rules without a class into tuples.
+
+    What follows the grammar and still has no meaning is a fault; something else stands for it.
+
+    Attributes:
+        source: The text.
+        faults: What has no meaning.
+    """
 
     def __init__(self, source: SourceText) -> None:
         super().__init__()
-        self._source = source
+        self.source = source
+        self.faults: list[SpecificationError] = []
 
     def __default__(self, data: Any, children: list[Any], meta: Any) -> Any:
         return tuple(child for child in children if child is not None)
@@ -153,19 +260,28 @@ class _Leaves(Transformer[Token, Any]):
         try:
             return str(json.loads(token))
         except ValueError:
-            raise KPLSyntaxError("the string has an unknown escape", self._span(token)) from None
+            self._report("the string has an unknown escape", token)
+            return ""
 
     def NUMBER(self, token: Token) -> int | float:
-        return int(token) if re.fullmatch(r"[+-]?\d+", token) else float(token)
+        number = float(token)
+        if isinf(number):
+            self._report("the number is too large", token)
+            return 0
+        return int(token) if _WHOLE.fullmatch(token) else number
 
-    def COUNT(self, token: Token) -> int:
-        return int(token)
+    COUNT = NUMBER
 
     def TIME(self, token: Token) -> Duration:
         try:
-            return duration_from_text(str(token))
+            time = duration_from_text(str(token))
         except ValueError as fault:
-            raise KPLSyntaxError(str(fault), self._span(token)) from None
+            self._report(str(fault), token)
+            return MILLISECOND
+        if time >= _LARGEST:
+            self._report("expected a time below 2^63 nanoseconds", token)
+            return MILLISECOND
+        return time
 
     TIME_WITH_UNIT = TIME
 
@@ -185,18 +301,20 @@ class _Leaves(Transformer[Token, Any]):
 
     def FORMULA(self, token: Token) -> Formula:
         """Parse the formula in a copy of the text that is blank elsewhere: places stay right."""
-        before = re.sub(r"[^\n]", " ", self._source.text[: token.start_pos])
+        before = re.sub(r"[^\n]", " ", self.source.text[: token.start_pos])
         try:
-            formula = parse_formula(before + token, self._source.name)
+            formula = parse_formula(before + token, self.source.name)
         except FormulaSyntaxError as fault:
-            place = Span(self._source, fault.span.start, fault.span.end)
-            raise FormulaSyntaxError(fault.message, place) from None
-        placed: Formula = _placed(formula, self._source)
+            place = Span(self.source, fault.span.start, fault.span.end)
+            self.faults.append(FormulaSyntaxError(fault.message, place))
+            return TRUE
+        placed: Formula = _placed(formula, self.source)
         return placed
 
-    def _span(self, token: Token) -> Span:
+    def _report(self, message: str, token: Token) -> None:
         start = token.start_pos or 0
-        return Span(self._source, start, start + len(token))
+        span = Span(self.source, start, start + len(token))
+        self.faults.append(KPLSyntaxError(message, span))
 
 
 def _placed(node: Any, source: SourceText) -> Any:
@@ -212,38 +330,38 @@ def _placed(node: Any, source: SourceText) -> Any:
 
 
 def _syntax_error(fault: UnexpectedInput, source: SourceText) -> KPLSyntaxError:
-    expected = _expected(fault)
-    if isinstance(fault, UnexpectedToken) and fault.token.type == "$END":
+    expected = wording_of(_terminals(fault), _keywords())
+    start = _start(fault, source)
+    found = _WORD.match(source.text, start)
+    if found is None:
         end = len(source.text.rstrip())
         message = f"expected {expected}, found the end of the text"
         return KPLSyntaxError(message, Span(source, end, end))
-    start = _start(fault)
-    found = _WORD.match(source.text, start)
-    word = found[0] if found else source.text[start]
-    span = Span(source, start, start + len(word))
-    if word == "[" and not _CLOSED.match(source.text, start):
+    span = Span(source, start, start + len(found[0]))
+    if found[0] == "[" and not _CLOSED.match(source.text, start):
         return KPLSyntaxError("this '[' is not closed", span)
-    return KPLSyntaxError(f"expected {expected}, found '{word}'", span)
+    keywords = [word for name, word in _keywords().items() if name in _terminals(fault)]
+    nearest = nearest_name(found[0], [word for word in keywords if word.isalpha()])
+    hint = f"; did you mean '{nearest}'?" if nearest and len(keywords) > 1 else ""
+    return KPLSyntaxError(f"expected {expected}, found '{found[0]}'{hint}", span)
 
 
-def _start(fault: UnexpectedInput) -> int:
+def _start(fault: UnexpectedInput, source: SourceText) -> int:
+    """Return where the first thing stands that does not fit."""
+    if isinstance(fault, UnexpectedToken) and fault.token.type == "$END":
+        return len(source.text)
     at = fault.token.start_pos if isinstance(fault, UnexpectedToken) else fault.pos_in_stream
     return 0 if at is None else at
 
 
-def _expected(fault: UnexpectedInput) -> str:
-    names: set[str] = set()
+def _terminals(fault: UnexpectedInput) -> set[str]:
     if isinstance(fault, UnexpectedToken):
-        names = set(fault.accepts or fault.expected)
-    elif isinstance(fault, UnexpectedCharacters):
-        names = set(fault.allowed)
-    phrases = sorted({_phrase(name) for name in names})
-    *others, last = phrases or ["something else"]
-    return f"{', '.join(others)} or {last}" if others else last
+        return set(fault.accepts or fault.expected)
+    return set(fault.allowed) if isinstance(fault, UnexpectedCharacters) else set()
 
 
-def _phrase(name: str) -> str:
-    if name in _PHRASES:
-        return _PHRASES[name]
-    pattern = _parser().get_terminal(name).pattern
-    return f"'{pattern.value}'"
+@cache
+def _keywords() -> dict[str, str]:
+    """Return the text of each terminal that always has the same."""
+    patterns = {each.name: each.pattern for each in _parser().terminals}
+    return {name: each.value for name, each in patterns.items() if each.type == "str"}

@@ -18,7 +18,7 @@ def check(
     ],
 ) -> None:
     """Report every fault of the files, each with its place; run nothing."""
-    from traffic.checking import faults_of_file
+    from traffic.checking import faults_of_file, warnings_of_file
 
     n_faults = 0
     for file in files:
@@ -27,6 +27,8 @@ def check(
         for fault in faults:
             sys.stdout.write(fault + "\n")
         if not faults:
+            for warning in warnings_of_file(file):
+                sys.stdout.write(warning + "\n")
             sys.stdout.write(f"{file}: no faults\n")
     if n_faults:
         sys.exit(2)
