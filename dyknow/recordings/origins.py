@@ -4,7 +4,8 @@ from collections import deque
 from collections.abc import Callable
 from typing import Any
 
-from dyknow.recordings.messages import ReadMessage, available_time_of
+from dyknow.recordings.messages import ReadMessage, Reference, available_time_of
+from dyknow.streams.process import Element
 from dyknow.streams.sample import Sample
 from dyknow.time import TimePoint
 
@@ -21,15 +22,21 @@ Find = Callable[[TimePoint], Sample[Any] | None]
 
 
 class _Origin:
-    """A message that may be referred to, read when it is."""
+    """A message that may be referred to, read when it is needed, and once."""
 
-    __slots__ = ("available_time", "data", "read", "sample")
+    __slots__ = ("_element", "available_time", "data", "read")
 
     def __init__(self, data: bytes, read: ReadMessage) -> None:
         self.available_time = available_time_of(data)
         self.data = data
         self.read = read
-        self.sample: Sample[Any] | None = None
+        self._element: Element | Reference | None = None
+
+    def element(self) -> Element | Reference:
+        """Return what the message says."""
+        if self._element is None:
+            self._element = self.read(self.data)
+        return self._element
 
 
 class Origins:
@@ -41,19 +48,20 @@ class Origins:
         self._recent: deque[_Origin] = deque()
         self._bytes = 0
 
-    def keep(self, data: bytes, read: ReadMessage) -> None:
-        """Remember a message of the generator."""
-        self._recent.append(_Origin(data, read))
+    def keep(self, data: bytes, read: ReadMessage) -> Callable[[], Element | Reference]:
+        """Remember a message of the generator; return what reads it."""
+        origin = _Origin(data, read)
+        self._recent.append(origin)
         self._bytes += len(data)
         while len(self._recent) > N_ORIGINS or self._bytes > ORIGIN_BYTES:
             self._bytes -= len(self._recent.popleft().data)
+        return origin.element
 
     def sample(self, available_time: TimePoint) -> Sample[Any] | None:
         """Return the sample that became available at a time, if the recording has it."""
         for origin in reversed(self._recent):
             if origin.available_time == available_time:
-                if origin.sample is None:
-                    element = origin.read(origin.data)
-                    origin.sample = element if isinstance(element, Sample) else None
-                return origin.sample
+                element = origin.element()
+                if isinstance(element, Sample):
+                    return element
         return self._find(available_time)

@@ -1,6 +1,6 @@
 """Reading a recording: which streams it has, and their samples, as they were."""
 
-from collections.abc import Collection, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
@@ -173,9 +173,10 @@ class Recording:
         does, part of it when the first is asked for.
         """
         topic_by_channel = {number: topic for topic in topics for number in self._known(topic)}
-        readers = {number: self._reader(number) for number in topic_by_channel}
+        for number in topic_by_channel:
+            self._reader(number)  # what is missing is told at once
         providers = {topic: self._provider(topic) for topic in topics}
-        return self._merged(topic_by_channel, readers, providers)
+        return self._merged(topic_by_channel, providers)
 
     def source(self, topic: str) -> "RecordedSource":
         """Return a source that gives the samples and heartbeats of a topic again.
@@ -219,7 +220,6 @@ class Recording:
     def _merged(
         self,
         topic_by_channel: Mapping[int, str],
-        readers: Mapping[int, ReadMessage],
         providers: Mapping[str, str],
     ) -> Iterator[tuple[str, Element]]:
         origins = {
@@ -228,17 +228,14 @@ class Recording:
             if provider
         }
         origins_by_channel = {
-            number: (kept, self._reader(number))
-            for provider, kept in origins.items()
-            for number in self._known(provider)
+            number: kept for provider, kept in origins.items() for number in self._known(provider)
         }
-        for _, number, _, data, _ in self._file.messages({*readers, *origins_by_channel}):
+        for _, number, _, data, _ in self._file.messages({*topic_by_channel, *origins_by_channel}):
+            read: Callable[[], Element | Reference] = partial(self._reader(number), data)
             if number in origins_by_channel:
-                kept, read = origins_by_channel[number]
-                kept.keep(data, read)
-            if number in readers:
-                topic = topic_by_channel[number]
-                element = readers[number](data)
+                read = origins_by_channel[number].keep(data, self._reader(number))
+            if number in topic_by_channel:
+                topic, element = topic_by_channel[number], read()
                 if isinstance(element, Reference):
                     element = self._resolved(element, topic, origins[providers[topic]])
                 yield topic, element
