@@ -46,11 +46,13 @@ def dot_from(snapshot: Snapshot, title: str = "Network") -> str:
 
 
 def _process(process: ProcessFigures) -> str:
-    facts = (
+    facts: tuple[str, ...] = (
         process.label,
         implementation_text(process),
-        f"{amount_text(process.samples, 'sample')}, {process.seconds:.3g} s",
+        amount_text(process.samples, "sample"),
     )
+    if process.seconds is not None:
+        facts = (*facts, f"{process.seconds:.3g} s")
     colour = _BAD if process.failures else _COLOURS.get(process.kind, _OTHER)
     return _statement(
         _quoted(process.label),

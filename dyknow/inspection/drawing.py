@@ -170,9 +170,12 @@ class _Picture:
         return Box(process.label, layer, width, height)
 
     def _facts(self, process: ProcessFigures) -> tuple[str, str]:
-        share = process.seconds / self._total
-        work = f"{amount_text(process.samples, 'sample')} · {share:.0%} CPU"
-        return implementation_text(process), work
+        samples = amount_text(process.samples, "sample")
+        share = "" if process.seconds is None else f" · {self._share(process):.0%} CPU"
+        return implementation_text(process), f"{samples}{share}"
+
+    def _share(self, process: ProcessFigures) -> float:
+        return (process.seconds or 0.0) / self._total
 
     def _process(self, process: ProcessFigures) -> Iterable[str]:
         box = self._box[process.label]
@@ -190,8 +193,9 @@ class _Picture:
         yield _text("label", left, middle - 11, _short(process.label))
         yield _text("small", left, middle + 4, made_of)
         yield _text("figure", left, middle + 18, work)
-        yield _rect("bar", left, middle + 23, bar, 3, 1.5)
-        yield _rect(kind, left, middle + 23, bar * process.seconds / self._total, 3, 1.5)
+        if process.seconds is not None:
+            yield _rect("bar", left, middle + 23, bar, 3, 1.5)
+            yield _rect(kind, left, middle + 23, bar * self._share(process), 3, 1.5)
         yield "</g>"
 
     def _output(self, name: str, stream: StreamFigures) -> Iterable[str]:
@@ -242,10 +246,9 @@ def _header(snapshot: Snapshot, title: str) -> Iterable[str]:
     if snapshot.begin:
         span = f"{snapshot.begin / SECOND:g} to {span}"
     violations = sum(stream.violations for stream in snapshot.streams)
-    facts = (
-        f"{span} · {len(snapshot.processes)} processes · {len(snapshot.streams)} streams · "
-        f"{snapshot.seconds:.3g}\u202fs of processor time"
-    )
+    counts = f"{len(snapshot.processes)} processes · {len(snapshot.streams)} streams"
+    work = f" · {snapshot.seconds:.3g}\u202fs of processor time" if snapshot.seconds else ""
+    facts = f"{span} · {counts}{work}"
     yield _text("title", _MARGIN, _MARGIN + 14, title)
     x, y = _MARGIN, _MARGIN + 32
     complaint = f' <tspan class="bad">· {amount_text(violations, "violation")}</tspan>'

@@ -11,13 +11,16 @@ from collections import Counter
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, replace
 from enum import StrEnum
-from typing import Final
+from typing import Final, TypeVar
 
 from pydantic import TypeAdapter, ValidationError
 
+from dyknow.runtime.statistics import Statistics
 from dyknow.time import SECOND, Duration, TimePoint
 
 __all__ = ["Kind", "ProcessFigures", "Snapshot", "StreamFigures"]
+
+Amount = TypeVar("Amount", int, float)
 
 FORMAT: Final = "dyknow-network"
 VERSION: Final = 1
@@ -49,8 +52,8 @@ class ProcessFigures:
         depth: How many processes lie between it and the sources; 0 for a source.
         policy: What it promises of its output, as KPL writes it; empty if nothing.
         on_failure: What happens when it fails: `stop` or `end`.
-        calls: How often it was asked or told something.
-        seconds: Processor seconds spent in it.
+        calls: How often it was asked or told something; None if that is not known.
+        seconds: Processor seconds spent in it; None if that is not known.
         samples: How many samples it produced.
         heartbeats: How often it said that nothing more comes up to some time.
         violations: How many violations its input streams have seen.
@@ -65,8 +68,8 @@ class ProcessFigures:
     depth: int = 0
     policy: str = ""
     on_failure: str = "stop"
-    calls: int = 0
-    seconds: float = 0.0
+    calls: int | None = 0
+    seconds: float | None = 0.0
     samples: int = 0
     heartbeats: int = 0
     violations: int = 0
@@ -105,6 +108,26 @@ class StreamFigures:
     violations: int = 0
     late: int = 0
 
+    @classmethod
+    def of(
+        cls, provider: str, receiver: str, number: int, policy: str, figures: Statistics
+    ) -> "StreamFigures":
+        """Return a stream with its figures; one with the number 0 is an output."""
+        has_delays = figures.samples > 0
+        return cls(
+            provider=provider,
+            receiver=receiver,
+            number=number,
+            policy=policy,
+            is_output=number == 0,
+            samples=figures.samples,
+            rate=figures.rate if figures.samples > 1 else None,
+            mean_delay=figures.mean_delay if has_delays else None,
+            delay_99=figures.delay_99 if has_delays else None,
+            violations=figures.violations,
+            late=figures.late,
+        )
+
     @property
     def name(self) -> str:
         """What recordings call the stream, such as `cars/1` or `output/cars`."""
@@ -136,8 +159,8 @@ class Snapshot:
 
     @property
     def seconds(self) -> float:
-        """Processor seconds of all processes together."""
-        return sum(process.seconds for process in self.processes)
+        """Processor seconds of all processes together, as far as they are known."""
+        return sum(process.seconds or 0.0 for process in self.processes)
 
     def inputs_of(self, label: str) -> tuple[StreamFigures, ...]:
         """Return the streams that feed the process *label*, in the order of its inputs."""
@@ -233,13 +256,17 @@ def _keyed(
         yield (*ends, seen[ends]), stream
 
 
+def _minus(later: Amount | None, earlier: Amount | None) -> Amount | None:
+    return None if later is None or earlier is None else later - earlier
+
+
 def _process_since(process: ProcessFigures, before: ProcessFigures | None) -> ProcessFigures:
     if before is None:
         return process
     return replace(
         process,
-        calls=process.calls - before.calls,
-        seconds=process.seconds - before.seconds,
+        calls=_minus(process.calls, before.calls),
+        seconds=_minus(process.seconds, before.seconds),
         samples=process.samples - before.samples,
         heartbeats=process.heartbeats - before.heartbeats,
         violations=process.violations - before.violations,

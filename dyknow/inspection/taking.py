@@ -89,18 +89,6 @@ def _process(process: RunningProcess, described: GeneratorDescription | None) ->
 
 
 def _stream(proxy: StreamProxy, outputs: _Outputs) -> StreamFigures:
-    figures, policy = proxy.statistics, text_from_policy(proxy.policy)
-    has_delays = figures.samples > 0
-    return StreamFigures(
-        provider=proxy.provider,
-        receiver=outputs.name_of(proxy, policy),
-        number=proxy.number,
-        policy=policy,
-        is_output=proxy.number == 0,
-        samples=figures.samples,
-        rate=figures.rate if figures.samples > 1 else None,
-        mean_delay=figures.mean_delay if has_delays else None,
-        delay_99=figures.delay_99 if has_delays else None,
-        violations=figures.violations,
-        late=figures.late,
-    )
+    policy = text_from_policy(proxy.policy)
+    receiver = outputs.name_of(proxy, policy)
+    return StreamFigures.of(proxy.provider, receiver, proxy.number, policy, proxy.statistics)

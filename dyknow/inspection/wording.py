@@ -82,10 +82,7 @@ def process_text(process: ProcessFigures) -> str:
         lines.append(process.text)
     if process.policy:
         lines.append(f"promises {process.policy}")
-    lines.append(
-        f"{amount_text(process.samples, 'sample')} from {amount_text(process.calls, 'call')}, "
-        f"{process.seconds:.3g} s of processor time"
-    )
+    lines.append(f"{amount_text(process.samples, 'sample')}{_work_text(process)}")
     if process.heartbeats:
         lines.append(amount_text(process.heartbeats, "heartbeat"))
     if process.cache_limit is not None:
@@ -110,6 +107,13 @@ def stream_text(stream: StreamFigures) -> str:
     if stream.late:
         lines.append(amount_text(stream.late, "late sample"))
     return "\n".join(lines)
+
+
+def _work_text(process: ProcessFigures) -> str:
+    if process.calls is None or process.seconds is None:
+        return ""
+    calls = amount_text(process.calls, "call")
+    return f" from {calls}, {process.seconds:.3g} s of processor time"
 
 
 def _digits(amount: float) -> str:

@@ -10,7 +10,7 @@ __all__ = ["inspect"]
 
 
 def inspect(
-    run: Annotated[Path, typer.Argument(help="Folder that 'traffic run' wrote.")],
+    run: Annotated[Path, typer.Argument(help="Folder that 'traffic run' wrote, or a recording.")],
     *,
     json: Annotated[
         bool, typer.Option("--json", help="Print one JSON document instead of tables.")
@@ -28,7 +28,9 @@ def inspect(
 
     check_picture(dot, "--dot", ".dot")
     check_picture(svg, "--svg", ".svg")
-    network = read_network(run)
+    network, missing = read_network(run)
+    if missing is not None:
+        sys.stderr.write(f"traffic: {missing}\n")
     title = run.resolve().name
     if dot is not None:
         write_dot(network, dot, title)

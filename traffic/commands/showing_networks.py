@@ -36,10 +36,9 @@ def show_snapshot(network: Snapshot, title: str) -> None:
 
 
 def _summary(network: Snapshot) -> str:
-    return (
-        f"{network.span / SECOND:g} s, {len(network.processes)} processes, "
-        f"{len(network.streams)} streams, {network.seconds:.3g} s of processor time"
-    )
+    counts = f"{len(network.processes)} processes, {len(network.streams)} streams"
+    work = f", {network.seconds:.3g} s of processor time" if network.seconds else ""
+    return f"{network.span / SECOND:g} s, {counts}{work}"
 
 
 def _processes(network: Snapshot) -> Table:
@@ -53,10 +52,10 @@ def _processes(network: Snapshot) -> Table:
             process.kind.value,
             escape(implementation_text(process)),
             str(process.depth),
-            count_text(process.calls),
+            "–" if process.calls is None else count_text(process.calls),
             count_text(process.samples),
-            f"{process.seconds:.2f}",
-            f"{process.seconds / total:.0%}",
+            "–" if process.seconds is None else f"{process.seconds:.2f}",
+            "–" if process.seconds is None else f"{process.seconds / total:.0%}",
             _cache(process),
             _count_of_faults(process.violations),
         )

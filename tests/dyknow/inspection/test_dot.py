@@ -81,7 +81,7 @@ class Reader:
                 return
 
 
-@settings(derandomize=True, deadline=None, max_examples=50)
+@settings(derandomize=True, deadline=None, max_examples=25)
 @given(snapshots())
 def test_the_text_keeps_to_the_grammar(snapshot):
     """Whatever is in the labels, there is a node for each box and an edge for each stream."""

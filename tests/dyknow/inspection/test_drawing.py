@@ -17,7 +17,7 @@ def texts(svg: str) -> list[str]:
     return ["".join(text.itertext()) for text in ET.fromstring(svg).iter(f"{SVG}text")]
 
 
-@settings(derandomize=True, deadline=None, max_examples=40)
+@settings(derandomize=True, deadline=None, max_examples=25)
 @given(snapshots())
 def test_any_network_makes_a_well_formed_picture(snapshot):
     """Whatever is in the labels, the picture is XML, with a box for each process and output."""

@@ -15,7 +15,7 @@ SECOND = 1_000_000_000
 HEADER = '{"format": "dyknow-network", "version": 1'
 
 
-@settings(derandomize=True, deadline=None, max_examples=50)
+@settings(derandomize=True, deadline=None, max_examples=25)
 @given(snapshots())
 def test_reading_is_the_inverse_of_writing(snapshot):
     """What has been written as JSON is read as the same snapshot."""

@@ -22,8 +22,8 @@ def run(tmp_path):
 
 def test_the_network_of_a_run_is_read(run):
     """What was written into the folder of a run is read from it, or from the file itself."""
-    assert read_network(run) == small_network()
-    assert read_network(run / "network.json") == small_network()
+    assert read_network(run) == (small_network(), None)
+    assert read_network(run / "network.json") == (small_network(), None)
 
 
 def test_a_run_of_an_older_version_is_told(tmp_path):
