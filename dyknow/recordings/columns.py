@@ -6,6 +6,7 @@ numbers are written as pairs. What no field can show, such as half precision, is
 """
 
 from dataclasses import dataclass
+from functools import lru_cache
 from typing import Any
 
 import numpy as np
@@ -80,6 +81,7 @@ _PACKING_BY_TYPE = {
 }
 
 
+@lru_cache(maxsize=256)
 def element_type(dtype: np.dtype[Any]) -> str:
     """Return what has to be known of the elements of an array; of texts, not how long they are.
 
