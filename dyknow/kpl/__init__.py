@@ -7,7 +7,8 @@ Read in this order:
   texts that do not follow the grammar; `build`: trees made in Python
 - `names`: what a specification declares, and what a label means; `parameters`: values and members
   in the places of names
-- `policies`: from constraints to a `Policy`; `settings`: what units are made with
+- `policies`: from constraints to a `Policy`; `states`: to the unit of a synchronisation;
+  `settings`: what units are made with
 - `sorts`, `promises`, `cycles`, `duplicates`: what can be wrong; `check`: every static fault
 - `unused`: what output streams need, and declarations that nothing needs
 - `implementations`: what symbols stand for; `members`: the members of sets, and mediation

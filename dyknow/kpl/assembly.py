@@ -13,15 +13,18 @@ from dyknow.kpl.description import NetworkChange
 from dyknow.kpl.implementations import Implementations, Maker
 from dyknow.kpl.members import Mediator
 from dyknow.kpl.names import streams_of
-from dyknow.kpl.policies import policy_from_constraints, state_policy_from_constraints
+from dyknow.kpl.policies import policy_from_constraints
 from dyknow.kpl.printer import text_from
 from dyknow.kpl.promises import policy_of_input, promise_of
+from dyknow.kpl.states import SelectOfStates, field_names_of_states, synchroniser
 from dyknow.kpl.syntax import (
     Constraint,
     GeneratorDeclaration,
     Label,
     Mediation,
     Process,
+    Provider,
+    Selection,
     SourceInstance,
     StreamTerm,
     Synchronisation,
@@ -31,7 +34,6 @@ from dyknow.runtime.failures import OnFailure
 from dyknow.runtime.kernel import OUTPUT, Kernel
 from dyknow.streams.policy import Policy
 from dyknow.streams.process import ComputationalUnit, Source
-from dyknow.streams.synchronisation import Synchronisation as Synchroniser
 from dyknow.streams.viewing import View
 
 __all__ = ["Assembly", "Part", "name_of", "policy_of"]
@@ -217,17 +219,31 @@ class Assembly:
             case SourceInstance(name):
                 part.source = maker.source(name)
             case Synchronisation(streams):
-                policy = state_policy_from_constraints(part.constraints)
                 inputs = [policy_of_input(each, self._providers(each)) for each in streams]
-                part.unit = Synchroniser([text_from(each) for each in streams], policy, inputs)
+                names = [text_from(each) for each in streams]
+                part.unit = synchroniser(names, part.constraints, inputs)
             case Mediation():
                 part.unit = Mediator()
             case Label(_, objects):
                 part.unit = View(objects[0].text)
+            case Selection(_, selected):
+                select = maker.select(part.process)
+                fields = self._fields_of_states(selected)
+                part.unit = select if fields is None else SelectOfStates(fields, select)
             case None:
                 raise AssertionError(part)  # the caller has asked what is missing
             case process:
                 part.unit = maker.unit(process)
+
+    def _fields_of_states(self, selected: Provider) -> tuple[str, ...] | None:
+        """Return the names of the fields of the states that are selected from, if they are."""
+        if isinstance(selected, Label) and selected.text in self.known:
+            process: Process | Provider = self.known[selected.text].process
+        else:
+            process = selected
+        if not isinstance(process, Synchronisation):
+            return None
+        return field_names_of_states(process.streams)
 
     def _providers(self, term: StreamTerm) -> list[GeneratorDeclaration]:
         name = name_of(term)

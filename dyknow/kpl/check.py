@@ -23,6 +23,7 @@ from dyknow.kpl.printer import text_from
 from dyknow.kpl.promises import Promises
 from dyknow.kpl.settings import repeated_settings, setting_faults
 from dyknow.kpl.sorts import Sorts, accepts
+from dyknow.kpl.states import field_names_of_states
 from dyknow.kpl.syntax import (
     ANY_SORT,
     Configuration,
@@ -178,7 +179,24 @@ class _Checker:
                 yield from self._stream(stream, scope.merging(process))
             case Selection():
                 yield from _repeated_fields(process)
+                yield from self._fields_of_states(process, scope)
                 yield from self._streams(streams_of(process), scope)
+
+    def _fields_of_states(self, selection: Selection, scope: Scope) -> Faults:
+        """Yield a fault for each field that states do not have, if it is states."""
+        selected: Process | Provider = selection.provider
+        if isinstance(selected, Label):
+            found = self._declared.meaning(selected, scope).generators
+            selected = found[0].declaration.process if len(found) == 1 else selected
+        if not isinstance(selected, Synchronisation):
+            return
+        known = field_names_of_states(selected.streams)
+        used = [(field.path, field.span) for field in selection.fields]
+        used += [(condition.path, condition.span) for condition in selection.conditions]
+        for path, span in used:
+            name = path.split(".")[0]
+            if name not in known:
+                yield UnknownNameError("field", name, span, nearest_name(name, known))
 
     def _source(self, source: Name) -> Faults:
         known = self._declared.sources

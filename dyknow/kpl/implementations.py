@@ -78,7 +78,7 @@ class Maker:
         make = self._find("source", name, self._implementations.sources)
         return None if make is None else self._made(name.span, make)
 
-    def unit(self, process: UnitInstance | Link | Merging | Selection) -> ComputationalUnit | None:
+    def unit(self, process: UnitInstance | Link | Merging) -> ComputationalUnit | None:
         """Return a new unit, or None if it cannot be made."""
         match process:
             case UnitInstance(unit, _, settings):
@@ -91,8 +91,11 @@ class Maker:
                 return self._link(process)
             case Merging(streams):
                 return Merge(len(streams))
-            case Selection():
-                return _select(process)
+
+    def select(self, selection: Selection) -> Select:
+        """Return the unit of a selection."""
+        conditions = [Condition(_path(c.path), plain_value(c.value)) for c in selection.conditions]
+        return Select([_field(each) for each in selection.fields], conditions)
 
     def _link(self, link: Link) -> ComputationalUnit | None:
         make = self._implementations.link
@@ -117,12 +120,6 @@ class Maker:
         except ValueError as fault:
             self.faults.append(SpecificationError(str(fault), span))
             return None
-
-
-def _select(selection: Selection) -> Select:
-    """Return the unit of a selection."""
-    conditions = [Condition(_path(c.path), plain_value(c.value)) for c in selection.conditions]
-    return Select([_field(each) for each in selection.fields], conditions)
 
 
 def _field(selected: SelectedField) -> Field:

@@ -208,6 +208,11 @@ def _(_node: syntax.UseLinear) -> str:
 
 
 @_text.register
+def _(_node: syntax.UseLatest) -> str:
+    return "use latest"
+
+
+@_text.register
 def _(_node: syntax.AnyUpdate) -> str:
     return "any update"
 

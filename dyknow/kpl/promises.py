@@ -6,12 +6,9 @@ from typing import TypeVar
 
 from dyknow.errors import PolicyError
 from dyknow.kpl.names import Declarations, Placed, Scope
-from dyknow.kpl.policies import (
-    policy_from_constraints,
-    policy_of_states,
-    state_policy_from_constraints,
-)
+from dyknow.kpl.policies import policy_from_constraints
 from dyknow.kpl.printer import text_from
+from dyknow.kpl.states import policy_of_states, synchroniser
 from dyknow.kpl.syntax import (
     Constraint,
     GeneratorDeclaration,
@@ -20,7 +17,6 @@ from dyknow.kpl.syntax import (
     Synchronisation,
 )
 from dyknow.source_text import Span
-from dyknow.streams import synchronisation
 from dyknow.streams.policy import Approximation, Order, Policy
 from dyknow.streams.refusal import refusal
 
@@ -37,7 +33,7 @@ def promise_of(declaration: GeneratorDeclaration) -> Policy:
         ValueError: The constraints of the declaration are at fault.
     """
     if isinstance(declaration.process, Synchronisation):
-        return policy_of_states(state_policy_from_constraints(declaration.constraints))
+        return policy_of_states(declaration.constraints)
     return policy_from_constraints(declaration.constraints)
 
 
@@ -52,7 +48,7 @@ def policy_of_input(stream: StreamTerm, providers: Sequence[GeneratorDeclaration
         ValueError: The constraints of the stream are at fault.
     """
     if isinstance(stream.provider, Synchronisation):
-        return policy_of_states(state_policy_from_constraints(stream.constraints))
+        return policy_of_states(stream.constraints)
     wanted = policy_from_constraints(stream.constraints)
     if len(providers) != 1 or wanted.approximation is Approximation.MOST_RECENT:
         return wanted
@@ -111,10 +107,9 @@ class Promises:
         span: Span,
     ) -> Iterator[PolicyError]:
         def made() -> object:
-            policy = state_policy_from_constraints(constraints)
             names = [text_from(stream.provider) for stream in process.streams]
             inputs = [self._input(stream, scope) for stream in process.streams]
-            return synchronisation.Synchronisation(names, policy, inputs)
+            return synchroniser(names, constraints, inputs)
 
         yield from _faults(made, span)
 

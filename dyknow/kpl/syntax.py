@@ -62,6 +62,7 @@ __all__ = [
     "Truth",
     "UnitDeclaration",
     "UnitInstance",
+    "UseLatest",
     "UseLinear",
     "UseMostRecent",
     "Value",
@@ -174,6 +175,11 @@ class UseLinear(_Node):
 
 
 @dataclass(frozen=True)
+class UseLatest(_Node):
+    """States are made at once of the latest values there are; nothing is waited for."""
+
+
+@dataclass(frozen=True)
 class AnyUpdate(_Node):
     """Every sample is wanted."""
 
@@ -268,6 +274,7 @@ Constraint = (
     NoApproximation
     | UseMostRecent
     | UseLinear
+    | UseLatest
     | AnyUpdate
     | AnyChange
     | AllUpdates

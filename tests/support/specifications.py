@@ -75,6 +75,7 @@ _CONSTRAINTS = st.one_of(
             syntax.NoApproximation(),
             syntax.UseMostRecent(),
             syntax.UseLinear(),
+            syntax.UseLatest(),
             syntax.AnyUpdate(),
             syntax.AnyChange(),
             syntax.AllUpdates(),
