@@ -7,17 +7,18 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from dyknow.errors import ProcessError, SpecificationErrors
 from dyknow.streams.sample import Sample
 from dyknow.streams.table import Table
-from dyknow.time import MILLISECOND, TimePoint
+from dyknow.time import MILLISECOND, SECOND, Duration, TimePoint
 from networks.reading import read_road_map
 from perception.camera import Calibration, Camera
 from traffic.bundled import data_folder
-from traffic.errors import ResultError
+from traffic.errors import RequestError, ResultError
 from traffic.request import RunRequest
 from traffic.results import read_result
-from traffic.running import run_scenario
-from traffic.system import MonitoringSystem
+from traffic.running import Told, Watch, run_scenario
+from traffic.system import MonitoringSystem, bundled_specification, specification_from
 from traffic.world import World
 
 ROOT = Path(__file__).parents[2]
@@ -102,6 +103,113 @@ class Vehicles:
         for i in range(25):
             time = TimePoint(i * 40 * MILLISECOND)
             yield Sample(Table("vehicle", np.arange(3) + 1000, columns), time, time)
+
+
+PERCEPTS = """
+source vehicles vehicles
+strmgen vehicles = vehicles
+compunit percepts NoisyPositions(vehicles)
+"""
+
+
+def watched(text, **options):
+    """Let a system of three standing cars run for a second; return its result."""
+    world = World(read_road_map(CROSSING), Vehicles(), None, np.random.default_rng(1))
+    specification = specification_from(PERCEPTS + text, "x.kpl")
+    system = MonitoringSystem(world, {}, specification=specification)
+    told = Told("x", {}, duration=SECOND, deadline=Duration(40 * MILLISECOND))
+    return Watch(system, None).complete(told, lambda *_: None, **options)
+
+
+def test_violations_are_counted_by_stream():
+    """Frames come every 40 ms, so that every 30 ms one is missing; each is counted once."""
+    result = watched("""
+        strmgen percepts[a] = NoisyPositions(vehicles with sample every 30, error = 0)
+        strmgen percepts[b] = NoisyPositions(vehicles, error = 0)
+        stream a = percepts[a] with any update
+        stream b = percepts[b] with sample every 40, max delay 0
+        """)
+
+    assert set(result.violations) == {"percepts[a]/1"}
+    assert result.violations["percepts[a]/1"] > 10
+
+
+def test_a_process_that_fails_and_ends_is_told():
+    """The rest goes on, where the specification says so; without that the run ends."""
+    text = """
+        compunit any StableFor(any)
+        strmgen percepts = NoisyPositions(vehicles, error = 0)
+        strmgen steady = StableFor(percepts, columns = nothing, duration = 1){}
+        stream percepts = percepts
+        stream steady = steady
+        """
+    result = watched(text.replace("{}", " on failure end"))
+
+    (failure,) = result.failures
+    assert failure.startswith("process 'steady' failed at 0 ms: KeyError: 'nothing'")
+    with pytest.raises(ProcessError, match="'steady' failed at 0 ms"):
+        watched(text.replace("{}", ""))
+
+
+@pytest.mark.sumo
+def test_a_changed_specification_is_run(tmp_path):
+    """Its copy is kept; parameters that it does not have cannot be set."""
+    text = bundled_specification().read_text("utf-8")
+    (tmp_path / "less.kpl").write_text(
+        text.replace("sample every sample_period", "sample every 200")
+        .replace("parameter sample_period = 100", "# no sample period")
+        .replace("stream recognised_overtakes = overtakes", "")
+    )
+    result = run(tmp_path / "x", duration="3 s", specification=tmp_path / "less.kpl")
+
+    assert "overtakes" not in result.timing.stages
+    assert "turns" in result.timing.stages
+    copy = tmp_path / "x" / "specification" / "less.kpl"
+    assert copy.read_text() == (tmp_path / "less.kpl").read_text()
+    with pytest.raises(RequestError, match="--sample-period: expected a specification with"):
+        run(tmp_path / "y", specification=tmp_path / "less.kpl", sample_period="200")
+
+
+def test_faults_of_a_changed_specification_have_places(tmp_path):
+    """All at once, before anything is simulated; nothing is left behind."""
+    text = bundled_specification().read_text("utf-8")
+    path = tmp_path / "bad.kpl"
+    path.write_text(
+        text.replace("= Moving(cars", "= Mooving(cars").replace("(car_pairs,", "(car_pears,")
+    )
+
+    with pytest.raises(SpecificationErrors) as caught:
+        run(tmp_path / "x", specification=path)
+    with pytest.raises(RequestError, match="--specification: expected a file that can be read"):
+        run(tmp_path / "x", specification=tmp_path / "none.kpl")
+
+    assert len(caught.value.exceptions) >= 2
+    assert [each.name for each in tmp_path.iterdir()] == ["bad.kpl"]
+
+
+@pytest.mark.sumo
+def test_a_source_that_the_world_lacks_is_refused(tmp_path):
+    """Without cameras there is no pose of one."""
+    text = bundled_specification().read_text("utf-8") + "\nstream pose = camera_pose\n"
+    (tmp_path / "x.kpl").write_text(text)
+
+    with pytest.raises(SpecificationErrors) as caught:
+        run(tmp_path / "x", specification=tmp_path / "x.kpl", duration="1 s")
+
+    assert "there is no camera; expected the view 'vision'" in str(caught.value.exceptions[0])
+    assert [each.name for each in tmp_path.iterdir()] == ["x.kpl"]
+
+
+def test_real_time_changes_nothing_but_the_pace():
+    """A second takes a second; how late the work was done is measured."""
+    text = "strmgen percepts = NoisyPositions(vehicles, error = 3)\nstream p = percepts"
+    fast, paced = watched(text), watched(text, real_time=True)
+
+    assert fast.timing.lateness is None
+    assert paced.timing.lateness is not None
+    assert paced.timing.lateness.max_ms >= paced.timing.lateness.mean_ms >= 0
+    assert paced.timing.wall_s >= 1
+    assert fast.model_copy(update={"timing": None}) == paced.model_copy(update={"timing": None})
 
 
 @pytest.mark.parametrize("view", ["vision", "truth"])
