@@ -33,13 +33,13 @@ class Codec(Protocol):
 
 
 class DataclassCodec:
-    """A codec for a dataclass: its fields are written by their names, and read into a new one."""
+    """A codec for a dataclass: what it is made with is written by name, and makes a new one."""
 
     def __init__(self, kind: type, name: str | None = None) -> None:
         """Translate values that are exactly of the type *kind*."""
         self.name = name or kind.__name__
         self._kind = kind
-        self._names = tuple(field.name for field in fields(kind))
+        self._names = tuple(field.name for field in fields(kind) if field.init)
 
     def handles(self, value: object) -> bool:
         """Return whether *value* is of the class itself, not of one derived from it."""
