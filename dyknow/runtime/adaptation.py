@@ -115,7 +115,6 @@ class AdaptedStream:
         "_push",
         "_reached",
         "_receivers",
-        "_seen",
         "_ticket",
         "_waiting",
         "first",
@@ -154,7 +153,6 @@ class AdaptedStream:
         self._older: deque[tuple[TimePoint, Element]] | None = None
         self._reached = TimePoint(beginning.begin - 1)
         self._is_behind = False
-        self._seen = generator.last, generator.complete_until
         for element in beginning.waiting:
             self._wait_with(element)
             self._reached = element.available_time
@@ -214,7 +212,6 @@ class AdaptedStream:
         if member.beat is not None:
             self._beats[member] = member.beat
         if is_first:
-            self._take_since()
             self._connect()
             self._plan()
 
@@ -305,15 +302,6 @@ class AdaptedStream:
         if self._left_out is None:
             self._left_out = Delays()
         self._left_out.add(sample.available_time - sample.valid_time)
-
-    def _take_since(self) -> None:
-        """Queue what the generator has handed out since this stream was made."""
-        last, until = self._seen
-        generator = self._generator
-        if generator.last is not None and generator.last is not last:
-            self._receive_behind(generator.last)
-        if generator.complete_until > until:
-            self._queue(Heartbeat(generator.complete_until, self._reached))
 
     def _hand_on(self, elements: Iterable[Element], now: TimePoint) -> None:
         for element in elements:

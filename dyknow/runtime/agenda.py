@@ -106,6 +106,7 @@ class Agenda:
 
     def next_time(self) -> TimePoint | None:
         """Return the time of the next turn, if there is one."""
+        self._tidy()
         entries = self._entries
         while entries:
             if self._is_planned(entries[0]):
@@ -128,8 +129,11 @@ class Agenda:
                 self._n_void -= 1
 
     def _void_one(self) -> None:
-        """Take note that an entry means nothing any more; throw such entries out in time."""
         self._n_void += 1
+        self._tidy()
+
+    def _tidy(self) -> None:
+        """Throw the void entries out when they are more than the others."""
         if 2 * self._n_void > len(self._entries):
             # As a set, since a turn may have been planned again for the time of a void entry.
             planned = {entry for entry in self._entries if self._is_planned(entry)}

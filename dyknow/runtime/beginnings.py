@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from typing import Any, Protocol
 
 from dyknow.errors import PolicyNotSupportedError
-from dyknow.runtime.cache import NEVER
+from dyknow.runtime.cache import NEVER, CachedStream
 from dyknow.runtime.generators import StreamGenerator
 from dyknow.runtime.statistics import Figures
 from dyknow.streams.adapter import Adapter, adapter_for
@@ -15,7 +15,7 @@ from dyknow.streams.process import Element
 from dyknow.streams.sample import END_OF_TIME, Heartbeat, Sample
 from dyknow.time import TimePoint, text_from_duration
 
-__all__ = ["Beginning", "Begun", "beginning", "continuation"]
+__all__ = ["Beginning", "Begun", "beginning", "check_past", "continuation"]
 
 
 @dataclass(slots=True)
@@ -53,28 +53,32 @@ class Begun(Figures, Protocol):
         """What the adapter is still to be told before what arrives."""
 
 
-def beginning(generator: StreamGenerator, policy: Policy, begin: TimePoint) -> Beginning:
+def check_past(past: CachedStream, policy: Policy, begin: TimePoint) -> None:
+    """Raise an error if a stream under *policy* would lack samples that are not held any more."""
+    if policy.start is not None:
+        earliest = _earliest(policy.start, policy, begin)
+        if past.lost_until >= earliest:
+            raise PolicyNotSupportedError(
+                past.label,
+                f"the stream would begin at {text_from_duration(earliest)}, and of the samples "
+                f"since then only the last {past.size} are held",
+            )
+
+
+def beginning(
+    generator: StreamGenerator, policy: Policy, begin: TimePoint, past: CachedStream | None = None
+) -> Beginning:
     """Return what a stream begins with that takes no other's place.
 
-    If the policy says from when on the stream is wanted, it begins with the samples of the past
-    that can still be in time; else with the next sample.
-
-    Raises:
-        PolicyNotSupportedError: The generator does not hold all those samples any more.
+    If the policy says from when on the stream is wanted, it begins with those samples of the
+    *past* that can still be in time; else with the next sample.
     """
-    new = Beginning(begin, _adapter(policy, begin))
-    if policy.start is not None and not generator.is_fresh:
+    adapter, older = _adapter(policy, begin), list[Element]()
+    if policy.start is not None and past is not None:
         earliest = _earliest(policy.start, policy, begin)
-        if generator.lost_until >= earliest:
-            raise PolicyNotSupportedError(
-                generator.label,
-                f"the stream would begin at {text_from_duration(earliest)}, and of the samples "
-                f"since then only the last {generator.size} are held",
-            )
-        _let_know_value(new.adapter, policy, generator, earliest)
-        new.older = generator.between(earliest, END_OF_TIME)
-    new.older = [*new.older, *_promise(generator, begin)]
-    return new
+        _let_know_value(adapter, policy, past, earliest)
+        older.extend(past.between(earliest, END_OF_TIME))
+    return Beginning(begin, adapter, older=[*older, *_promise(generator, begin)])
 
 
 def continuation(
@@ -133,11 +137,9 @@ def _known_from(
     return [*known, *unsettled]
 
 
-def _let_know_value(
-    adapter: Adapter, policy: Policy, generator: StreamGenerator, time: TimePoint
-) -> None:
+def _let_know_value(adapter: Adapter, policy: Policy, past: CachedStream, time: TimePoint) -> None:
     """Let an adapter that approximates know the value that held before *time*."""
-    known = generator.find_at_or_before(TimePoint(time - 1))
+    known = past.find_at_or_before(TimePoint(time - 1))
     if policy.approximation is Approximation.MOST_RECENT and known is not None:
         _tell_silently(adapter, known)
 

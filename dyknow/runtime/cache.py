@@ -55,7 +55,7 @@ class CachedStream:
     def capacity(self, capacity: int) -> None:
         held, self._cache = self._cache, deque(maxlen=_checked(capacity))
         for sample in held:
-            self._hold(sample)
+            self.hold(sample)
 
     @property
     def samples(self) -> tuple[Sample[Any], ...]:
@@ -122,12 +122,21 @@ class CachedStream:
         """Return all samples with valid times from *first* to *last*, inclusive."""
         return [sample for sample in self._cache if first <= sample.valid_time <= last]
 
+    def snapshot(self) -> "CachedStream":
+        """Return a cache of the same samples, with room for one more."""
+        held = CachedStream(self.label, self.capacity + 1)
+        held.lost_until = self.lost_until
+        for sample in self._cache:
+            held.hold(sample)
+        return held
+
     def reset(self) -> None:
         """Forget all samples."""
         while self._cache:
             self._lose(self._cache.popleft())
 
-    def _hold(self, sample: Sample[Any]) -> None:
+    def hold(self, sample: Sample[Any]) -> None:
+        """Hold the next sample, in place of the oldest if there is no room."""
         cache = self._cache
         if len(cache) == cache.maxlen:
             self._lose(cache[0])

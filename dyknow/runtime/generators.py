@@ -131,15 +131,17 @@ class StreamGenerator(CachedStream):
         self._beats.pop(key, None)
 
     def check(self, element: Element) -> None:
-        """Raise an error if the process may not produce this now."""
-        if element.__class__ is Sample:
+        """Raise an error if the process may not produce this now; note what it promises."""
+        if isinstance(element, Sample):
             if element.valid_time <= self._promised:
                 until = text_from_duration(self._promised)
                 valid_time = text_from_duration(element.valid_time)
                 raise ValueError(
                     f"a sample valid at {valid_time} after the promise of none up to {until}"
                 )
-        elif element.__class__ is not Heartbeat:
+        elif isinstance(element, Heartbeat):
+            self._promised = max(self._promised, element.until)
+        else:
             raise TypeError(f"expected a sample or a heartbeat, found {element!r}")
 
     def put(self, element: Element, now: TimePoint) -> None:
@@ -175,7 +177,6 @@ class StreamGenerator(CachedStream):
         self._waiting.clear()
 
     def _put_heartbeat(self, heartbeat: Heartbeat, now: TimePoint) -> None:
-        self._promised = max(self._promised, heartbeat.until)
         earliest = max(now, self._last_time)
         if heartbeat.available_time < earliest:
             heartbeat = Heartbeat(heartbeat.until, earliest)
@@ -193,7 +194,7 @@ class StreamGenerator(CachedStream):
         if self.last is None:
             self.first = sample.valid_time
         self.last = sample
-        self._hold(sample)
+        self.hold(sample)
         self.delays.add(sample.available_time - sample.valid_time)
         for receive in self._receivers.values():
             receive(sample)

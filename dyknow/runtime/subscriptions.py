@@ -2,18 +2,20 @@
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import TypeVar
+from typing import Any, TypeVar
 
 from dyknow.errors import PolicyNotSupportedError
 from dyknow.runtime.accounts import Account
 from dyknow.runtime.adaptation import AdaptedStream, PlainStream, Stream
 from dyknow.runtime.agenda import Agenda
-from dyknow.runtime.beginnings import Beginning, beginning, continuation
+from dyknow.runtime.beginnings import Beginning, beginning, check_past, continuation
+from dyknow.runtime.cache import CachedStream
 from dyknow.runtime.changes import Changes
 from dyknow.runtime.generators import ANYTHING, Beat, Label, Receive, StreamGenerator
 from dyknow.runtime.statistics import Statistics
 from dyknow.streams.policy import Policy, SampleEvery, Violation
 from dyknow.streams.refusal import refusal
+from dyknow.streams.sample import Sample
 from dyknow.time import Duration, text_from_duration
 
 __all__ = ["Receiver", "StreamProxy", "StreamViolation", "Subscriptions", "ViolationReceiver"]
@@ -281,10 +283,12 @@ class Subscriptions:
         """
         self.check(generator, policy)
         proxy = StreamProxy(self, generator, receiver, policy)
-        begins_in_the_past = policy.start is not None and not generator.is_fresh
-        stream = self._new_stream(generator, policy) if begins_in_the_past else None
+        past, last = None, generator.last
+        if policy.start is not None:
+            past = generator.snapshot()
+            check_past(past, policy, self._changes.begin)
         self._enter(proxy)
-        self._changes.make(lambda: self._begin(proxy, stream))
+        self._changes.make(lambda: self._begin(proxy, past, last))
         return proxy
 
     def replace(self, proxy: StreamProxy, policy: Policy) -> None:
@@ -322,20 +326,35 @@ class Subscriptions:
         if proxy.number:
             _remove(self._inputs_of, proxy.receiver, proxy)
 
-    def _begin(self, proxy: StreamProxy, stream: AdaptedStream | None) -> None:
+    def _begin(
+        self, proxy: StreamProxy, past: CachedStream | None, last: Sample[Any] | None
+    ) -> None:
+        """Let a stream begin, with what was held when it was asked for and what came since."""
         generator = proxy.generator
-        if stream is not None:
-            self._attach(proxy, stream)
-        elif proxy.policy == ANYTHING and generator.is_fresh:
+        if past is not None and generator.last is not None and generator.last is not last:
+            # Only one: there is one sample at an instant.
+            past.hold(generator.last)
+        if proxy.policy == ANYTHING and generator.is_fresh:
             self._attach(proxy, PlainStream(generator))
-        else:
-            self._attach(proxy, self._new_stream(generator, proxy.policy))
+            return
+        key = (generator, proxy.policy)
+        begin = self._changes.begin
+        stream = self._found(key)
+        if stream is None:
+            stream = self._made(key, beginning(generator, proxy.policy, begin, past))
+        self._attach(proxy, stream)
 
     def _replace(self, proxy: StreamProxy, policy: Policy) -> None:
-        if policy != proxy.policy:
-            stream = self._new_stream(proxy.generator, policy, proxy.stream)
-            proxy.policy = policy
-            self._attach(proxy, stream)
+        old = proxy.stream
+        if policy == proxy.policy or old is None:
+            return
+        key = (proxy.generator, policy, old)
+        stream = self._found(key)
+        if stream is None:
+            begin = self._changes.begin
+            stream = self._made(key, continuation(proxy.generator, policy, begin, old))
+        proxy.policy = policy
+        self._attach(proxy, stream)
 
     def _set_period(self, proxy: StreamProxy, period: Duration) -> None:
         stream = proxy.stream
@@ -356,19 +375,6 @@ class Subscriptions:
         proxy.attach(stream)
         if old is not None and not old.n_members:
             self._shared.clear()
-
-    def _new_stream(
-        self, generator: StreamGenerator, policy: Policy, predecessor: Stream | None = None
-    ) -> AdaptedStream:
-        """Return a stream that begins now, which may have been made for another receiver."""
-        key = (generator, policy, predecessor)
-        found = self._found(key)
-        if found is not None:
-            return found
-        begin = self._changes.begin
-        if predecessor is None:
-            return self._made(key, beginning(generator, policy, begin))
-        return self._made(key, continuation(generator, policy, begin, predecessor))
 
     def _found(self, key: StreamKey) -> AdaptedStream | None:
         """Return a stream that was made alike while nothing has happened since."""

@@ -10,7 +10,7 @@ from dyknow.errors import ProcessError
 from dyknow.runtime.generators import Label
 from dyknow.runtime.kernel import Kernel
 from dyknow.streams.policy import Approximation, Order, Policy, SampleEvery
-from dyknow.streams.sample import Sample
+from dyknow.streams.sample import Heartbeat, Sample
 from dyknow.streams.stream import is_fluent_stream, join
 from dyknow.streams.synchronisation import Synchronisation
 from tests.support.policies import streams
@@ -385,6 +385,80 @@ def test_what_a_policy_has_held_back_is_delivered_at_the_end():
     kernel.run()
 
     assert text(received) == "0:a 100:b@240 200:c@240+1"
+
+
+def test_a_run_delivers_what_its_last_instant_has_produced():
+    """A sample that gets a later nanosecond only because it is the second one is not left over."""
+
+    class Thrice(Joining):
+        def push(self, now, inputs):
+            return [Sample(n, now, now) for n in range(3)]
+
+    kernel, collected = network(
+        sources={"a": "0:a 10:b 10:c 20:d"},
+        units={"b": (Thrice(), "a"), "c": (Joining(delay=1), "b"), "d": (Joining(), "b")},
+    )
+
+    kernel.run(until=ms(10))
+
+    assert text(collected["a"]) == "0:a 10:b 10:c@10+1"
+    assert len(collected["b"]) == len(collected["d"]) == 9
+    assert len(collected["c"]) == 8
+    assert kernel.now == ms(10) + 5
+    kernel.run(until=ms(11))
+    assert len(collected["c"]) == 9
+    assert kernel.now == ms(11)
+
+
+def test_heartbeats_reach_those_who_listen():
+    """Ordinary units never see one; what they hold up comes after the samples before it."""
+
+    class Hearing(Joining):
+        def __init__(self):
+            super().__init__()
+            self.heard = []
+
+        def beat(self, now, at, heartbeat):
+            self.heard.append((now, at, heartbeat.until))
+            return [Heartbeat(heartbeat.until, now)]
+
+    hearing, joining, heard = Hearing(), Joining(), []
+    source = [*stream("0:a"), Heartbeat(ms(4), ms(5)), *stream("10:b"), Heartbeat(ms(20), ms(10))]
+    kernel = Kernel()
+    kernel.add_source(Label("a"), GivenSource(source))
+    kernel.add_source(Label("b"), GivenSource("10:x"))
+    inputs = [(Label("b"), ANYTHING), (Label("a"), Policy(order=Order.STRICT))]
+    kernel.add_unit(Label("hearing"), hearing, inputs)
+    kernel.add_unit(Label("joining"), joining, [(Label("hearing"), ANYTHING)])
+    kernel.subscribe(Label("hearing"), lambda sample: None, beat=heard.append)
+
+    kernel.run()
+
+    assert hearing.heard == [(ms(5), 1, ms(4)), (ms(10), 1, ms(20))]
+    assert hearing.calls == joining.calls == [ms(0), ms(10)]
+    assert heard == [Heartbeat(ms(4), ms(5)), Heartbeat(ms(20), ms(10))]
+    assert kernel.generator(Label("a")).statistics.heartbeats == 2
+
+
+def test_an_input_that_is_added_later_makes_its_unit_deeper():
+    """The unit, and all after it, are still called once per instant, with all that is new."""
+    units = {"far": (Joining(), "a"), "farther": (Joining(), "far"), "near": (Joining(), "a")}
+    kernel, collected = network(
+        sources={"a": "0:a 10:b 20:c"}, units=units | {"last": (Joining(), "near")}
+    )
+
+    kernel.run(until=ms(5))
+    given = kernel.add_input(Label("near"), Label("farther"))
+    kernel.run(until=ms(15))
+    kernel.remove_input(given)
+    kernel.run()
+
+    assert text(collected["near"]) == "0:a 10:bb 20:c-"
+    assert text(collected["last"]) == "0:a 10:bb 20:c-"
+    assert [kernel.processes[label].depth for label in kernel.labels] == [0, 1, 2, 3, 4]
+    kernel.add_input(Label("near"), Label("far"))
+    with pytest.raises(ValueError, match="'last' depends on 'far'"):
+        kernel.add_input(Label("far"), Label("last"))
 
 
 def test_labels_must_be_known_and_new():
