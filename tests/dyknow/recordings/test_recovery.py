@@ -72,10 +72,9 @@ def n_of(said: Said) -> int:
 def test_files_cut_off_anywhere_are_read_and_recovered(tmp_path: Path) -> None:
     """Wherever a file ends, what was said in its whole chunks is read, and recovered."""
     with Recorder(tmp_path / "whole.mcap", metadata={"a": "b"}, chunk_size=60) as recorder:
-        x, stream = recorder.generator("x"), recorder.stream("y/1", "x")
-        for time in range(6):
+        x = recorder.generator("x")
+        for time in range(9):
             x(sample(float(time), time))
-            stream(sample(float(time), time))
     data = (tmp_path / "whole.mcap").read_bytes()
     whole = said_in(tmp_path / "whole.mcap")
     found = [n_read(tmp_path, data[:size], whole) for size in range(len(data))]
@@ -98,7 +97,7 @@ def n_read(folder: Path, data: bytes, whole: Said) -> int | None:
     except (NotARecordingError, DamagedRecordingError):
         return None
     assert is_prefix(said, whole)
-    if len(data) % 16 == 0:
+    if len(data) % 32 == 0:
         report = recover(cut, out)
         assert repr(said_in(out)) == repr(said)
         assert report.n_messages == n_of(said)
@@ -142,8 +141,8 @@ def test_no_flipped_byte_goes_unnoticed(tmp_path: Path) -> None:
     whole = said_in(tmp_path / "whole.mcap")
     damaged = tmp_path / "damaged.mcap"
     errors = 0
-    for at in range(0, len(data), 2):
-        damaged.write_bytes(data[:at] + bytes([data[at] ^ 1 << at // 2 % 8]) + data[at + 1 :])
+    for at in range(0, len(data), 3):
+        damaged.write_bytes(data[:at] + bytes([data[at] ^ 1 << at % 8]) + data[at + 1 :])
         try:
             with open_recording(damaged) as recording:
                 said = said_of(recording)
@@ -153,7 +152,7 @@ def test_no_flipped_byte_goes_unnoticed(tmp_path: Path) -> None:
         else:
             assert repr(said) == repr(whole)
 
-    assert errors > len(data) / 8
+    assert errors > len(data) / 12
 
 
 def test_damaged_chunk_is_named_and_left_out(tmp_path: Path) -> None:
