@@ -1,6 +1,6 @@
 """Judging the recording of a run: does it satisfy its specification, or another one?"""
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Collection, Iterator, Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
@@ -113,7 +113,7 @@ def _judged(recording: Recording, path: Path | None, on_progress: OnProgress | N
     build = _Builder(description, specification, outputs, world_of(recording))
     network = declared_network(build, SORTS, _SAID_AGAIN)
     until = TimePoint(description.origin.scenario.duration)
-    execution = RecordedExecution(recording, outputs, until, without=(TRUTH,))
+    execution = RecordedExecution(recording, until, without=(TRUTH,))
     return judge(network, execution, on_progress=on_progress)
 
 
@@ -158,15 +158,20 @@ class _Builder:
             name: _Nowhere for name in declared.sources if name not in known
         }
 
-    def __call__(self) -> Network:
+    def __call__(
+        self,
+        specification: Specification | None = None,
+        sources: Mapping[str, Callable[[], Source]] | None = None,
+        outputs: Collection[str] = (),
+    ) -> Network:
         """Return a network that nobody has run."""
         world = self._anew(self._world, self._description)
         system = MonitoringSystem(
             world,
             self._parameters,
-            self._outputs,
-            specification=self._specification,
-            sources=self._foreign,
+            (*self._outputs, *outputs),
+            specification=specification or self._specification,
+            sources={**self._foreign, **(sources or {})},
         )
         return system.network
 

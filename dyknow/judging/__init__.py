@@ -14,6 +14,8 @@ Read in this order:
 - `terms`: whether a stream is one that its policy allows
 - `recomputing`: what a process makes of recorded streams; `comparing`: where that differs
 - `published`: whether the right violations were published
+- `comings`: what comes and goes while a network runs
 - `judge`: all of it together
-- `specified`: what is declared, from a network; `recorded`: the execution, from a recording
+- `specified`: what is declared, from a network, and `changing`, what changes by itself there;
+  `recorded`: the execution, from a recording
 """

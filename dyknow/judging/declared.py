@@ -1,14 +1,24 @@
 """What a specification declares, as far as a judge needs it: processes, streams and policies."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass
+from typing import Protocol
 
 from dyknow.judging.sorts import SortTest
+from dyknow.judging.streams import KnownStreams
 from dyknow.runtime.generators import Label
+from dyknow.runtime.subscriptions import StreamViolation
 from dyknow.streams.policy import Policy
-from dyknow.streams.process import ComputationalUnit, Source
+from dyknow.streams.process import ComputationalUnit, Element, Source
 
-__all__ = ["ANYTHING", "OUTPUT", "DeclaredNetwork", "DeclaredProcess", "DeclaredStream"]
+__all__ = [
+    "ANYTHING",
+    "OUTPUT",
+    "ChangingPart",
+    "DeclaredNetwork",
+    "DeclaredProcess",
+    "DeclaredStream",
+]
 
 OUTPUT = Label("output")
 """The receiver of all output streams."""
@@ -61,7 +71,8 @@ class DeclaredProcess:
         label: The name of the generator.
         inputs: The input streams; none for a source.
         make_source: Makes the source; None for a unit, and for a source that cannot be had again.
-        make_unit: Makes the unit; None for a source.
+        make_unit: Makes the unit; None for a source, and for a mediation.
+        is_mediation: Whether its inputs change while it works.
         sort: The declared sort of the values, as it is written.
         sort_test: Tells what is wrong with a value that is not of this sort; None if it is not
             known what the sort contains.
@@ -72,6 +83,7 @@ class DeclaredProcess:
     inputs: tuple[DeclaredStream, ...] = ()
     make_source: Callable[[], Source] | None = None
     make_unit: Callable[[], ComputationalUnit] | None = None
+    is_mediation: bool = False
     sort: str = "any"
     sort_test: SortTest | None = None
     promise: Policy = ANYTHING
@@ -79,12 +91,29 @@ class DeclaredProcess:
     @property
     def is_source(self) -> bool:
         """Whether the process has no inputs."""
-        return self.make_unit is None
+        return self.make_unit is None and not self.is_mediation
 
     @property
     def can_be_made(self) -> bool:
         """Whether the process can be had again."""
         return self.make_source is not None or self.make_unit is not None
+
+
+class ChangingPart(Protocol):
+    """What changes by itself in a network; it can only be run again as a whole."""
+
+    @property
+    def sources_within(self) -> Collection[str]:
+        """The labels of sources that it has inside, without which it cannot be run."""
+
+    def run(
+        self, streams: KnownStreams, receive: Callable[[str, Element], None]
+    ) -> Sequence[StreamViolation]:
+        """Hand to *receive* what its streams should be, by topic; return its violations.
+
+        Raises:
+            ProcessError: A process fails on what was recorded.
+        """
 
 
 @dataclass(frozen=True, slots=True)
@@ -94,7 +123,16 @@ class DeclaredNetwork:
     Attributes:
         processes: By label, inputs before those that use them.
         outputs: The output streams.
+        changing: What changes by itself, if anything does: configuration blocks and mediations.
     """
 
     processes: Mapping[Label, DeclaredProcess]
     outputs: tuple[DeclaredStream, ...] = ()
+    changing: ChangingPart | None = None
+
+    @property
+    def static_topics(self) -> frozenset[str]:
+        """The topics of all streams that there are from the beginning to the end."""
+        labels = [each.label for each in self.processes.values() if not each.is_mediation]
+        inputs = [stream.topic for each in self.processes.values() for stream in each.inputs]
+        return frozenset([*labels, *inputs, *(stream.topic for stream in self.outputs)])

@@ -29,8 +29,8 @@ class Execution(Protocol):
         """The topics of the streams whose samples are known."""
 
     @property
-    def outputs(self) -> Collection[str]:
-        """The names of the output streams that were asked for."""
+    def existing(self) -> Collection[str] | None:
+        """The topics of all streams that there were, recorded or not; None if not known."""
 
     def contents(self, topic: str) -> Iterable[Element]:
         """Return samples and heartbeats of a stream in the order in which they were recorded.
@@ -50,14 +50,14 @@ class Interpretation:
     Attributes:
         until: The time up to which everything is known.
         streams: Samples and heartbeats by topic.
-        outputs: The names of the output streams that were asked for.
         published: The violations; None if they are not known.
+        existing: The topics of all streams that there were; None if not known.
     """
 
     until: TimePoint
     streams: Mapping[str, Sequence[Element]]
-    outputs: Collection[str]
     published: Sequence[StreamViolation] | None = ()
+    existing: Collection[str] | None = None
 
     @property
     def topics(self) -> Collection[str]:

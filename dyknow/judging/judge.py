@@ -11,10 +11,11 @@ from collections.abc import Callable, Iterable, Iterator, Sequence
 from typing import Any
 
 from dyknow.errors import ProcessError
+from dyknow.judging.comings import changing_findings
 from dyknow.judging.comparing import Comparison
 from dyknow.judging.declared import DeclaredNetwork, DeclaredProcess, DeclaredStream
 from dyknow.judging.execution import Execution
-from dyknow.judging.judgement import Basis, Breach, Definition, Finding, Judgement, Tally
+from dyknow.judging.judgement import Basis, Breach, Definition, Draft, Finding, Judgement, Tally
 from dyknow.judging.published import PublishedViolations, ViolatedStream
 from dyknow.judging.recomputing import Recomputation, unknown_behind
 from dyknow.judging.streams import KnownStreams
@@ -49,36 +50,14 @@ def judge(
         on_progress: Told how far the work has come.
     """
     judge_at_work = _Judge(network, execution, keep)
-    n_all = sum(len(each.inputs) + 1 for each in network.processes.values())
+    n_all = len(network.static_topics) + 1
     findings: list[Finding] = []
     for finding in judge_at_work.findings():
         findings.append(finding)
         if on_progress is not None:
-            on_progress(len(findings), n_all + len(network.outputs) + 1)
-    return Judgement(tuple(findings))
-
-
-class _Draft:
-    """A finding while it is being made."""
-
-    def __init__(self, stream: str, definition: Definition, keep: int) -> None:
-        self.stream = stream
-        self.definition = definition
-        self.tally = Tally(keep)
-        self.samples = 0
-        self.basis = Basis.NOTHING
-        self.unjudged: list[str] = []
-
-    def finished(self) -> Finding:
-        return Finding(
-            self.stream,
-            self.definition,
-            self.samples,
-            self.basis,
-            self.tally.kept,
-            self.tally.count,
-            tuple(self.unjudged),
-        )
+            on_progress(len(findings), max(n_all, len(findings)))
+    undeclared = [f"nothing declares '{topic}'" for topic in judge_at_work.undeclared()]
+    return Judgement(tuple(findings), tuple(undeclared))
 
 
 class _Judge:
@@ -101,15 +80,24 @@ class _Judge:
         """Yield a finding for each declaration, inputs before what they feed."""
         for process in self._network.processes.values():
             yield from map(self._term, process.inputs)
-            yield self._generator(process)
+            if not process.is_mediation:
+                yield self._generator(process)
         yield from map(self._term, self._network.outputs)
+        if self._network.changing is not None:
+            yield from changing_findings(self._network, self._streams, self._published, self._keep)
         yield self._violation_streams()
+
+    def undeclared(self) -> list[str]:
+        """Return the topics that were recorded and that nothing declares."""
+        if self._network.changing is not None:
+            return []
+        return sorted(self._streams.topics - self._network.static_topics)
 
     def _generator(self, process: DeclaredProcess) -> Finding:
         """Judge the declaration of a stream generator (definitions 4.5.4, 4.5.7 and 4.5.8)."""
         label = process.label
         definition = Definition.SOURCE if process.is_source else Definition.UNIT
-        draft = _Draft(label, definition, self._keep)
+        draft = Draft(label, definition, self._keep)
         self._read(label, draft)
         if label in self._streams:
             draft.tally.add(self._wellformed(process))
@@ -120,9 +108,11 @@ class _Judge:
             self._published.leave_open((label, label, 0))
         return self._finished(draft)
 
-    def _read(self, topic: str, draft: _Draft) -> None:
+    def _read(self, topic: str, draft: Draft) -> None:
         """Read a stream, if it was recorded and can be read."""
-        if topic not in self._streams:
+        if not self._streams.may_have_been(topic):
+            draft.tally.add([Breach(topic, Definition.MODEL, "such a stream", "none")])
+        elif topic not in self._streams:
             draft.unjudged.append("it was not recorded")
         elif fault := self._streams.fault(topic):
             whole = "a stream that can be read"
@@ -147,7 +137,7 @@ class _Judge:
         names = ", ".join(f"'{label}'" for label in sorted(set(unknown)))
         return [f"it cannot be computed again without {names}"] if names else []
 
-    def _compute(self, process: DeclaredProcess, draft: _Draft) -> None:
+    def _compute(self, process: DeclaredProcess, draft: Draft) -> None:
         """Compare what was recorded with what follows from the recorded inputs.
 
         If they differ and something before them is at fault, it may also be what follows from
@@ -182,7 +172,7 @@ class _Judge:
     def _term(self, stream: DeclaredStream) -> Finding:
         """Judge a stream term (definitions 4.5.9 to 4.5.12)."""
         definition = Definition.STREAM if stream.is_output else Definition.TERM
-        draft = _Draft(stream.topic, definition, self._keep)
+        draft = Draft(stream.topic, definition, self._keep)
         self._read(stream.topic, draft)
         if stream.topic in self._streams:
             draft.tally.add(order_breaches(stream.topic, self._streams.as_recorded(stream.topic)))
@@ -193,7 +183,7 @@ class _Judge:
             draft.unjudged.append(f"'{stream.provider}', of which it is made, was not recorded")
         return self._finished(draft)
 
-    def _adapt(self, stream: DeclaredStream, draft: _Draft) -> None:
+    def _adapt(self, stream: DeclaredStream, draft: Draft) -> None:
         """Compare a stream with what its policy allows to make of the provider's samples."""
         adapted: list[Sample[Any]] = []
         recomputation = Recomputation(self._network, self._streams)
@@ -210,7 +200,7 @@ class _Judge:
         draft.tally.add(policy_breaches(stream, recorded, published))
 
     def _violation_streams(self) -> Finding:
-        draft = _Draft("violations", Definition.POLICY, self._keep)
+        draft = Draft("violations", Definition.POLICY, self._keep)
         if self._violations is None:
             draft.unjudged.append("violations were not recorded")
             return draft.finished()
@@ -219,7 +209,7 @@ class _Judge:
         draft.tally.add(self._published.breaches())
         return draft.finished()
 
-    def _finished(self, draft: _Draft) -> Finding:
+    def _finished(self, draft: Draft) -> Finding:
         if draft.tally.count:
             self._suspects.add(draft.stream)
         return draft.finished()

@@ -11,7 +11,7 @@ from enum import Enum, StrEnum
 from dyknow.streams.sample import Sample
 from dyknow.time import TimePoint, text_from_duration
 
-__all__ = ["Basis", "Breach", "Definition", "Finding", "Judgement", "Tally"]
+__all__ = ["Basis", "Breach", "Definition", "Draft", "Finding", "Judgement", "Tally"]
 
 
 class Definition(StrEnum):
@@ -181,3 +181,36 @@ class Tally:
     def kept(self) -> tuple[Breach, ...]:
         """The first breaches."""
         return tuple(self._kept)
+
+
+class Draft:
+    """A finding while it is being made.
+
+    Attributes:
+        stream: The topic.
+        definition: By which the declaration holds or not.
+        tally: Takes the breaches.
+        samples: How many samples there are.
+        basis: What they were compared with.
+        unjudged: What could not be judged.
+    """
+
+    def __init__(self, stream: str, definition: Definition, keep: int) -> None:
+        self.stream = stream
+        self.definition = definition
+        self.tally = Tally(keep)
+        self.samples = 0
+        self.basis = Basis.NOTHING
+        self.unjudged: list[str] = []
+
+    def finished(self) -> Finding:
+        """Return the finding."""
+        return Finding(
+            self.stream,
+            self.definition,
+            self.samples,
+            self.basis,
+            self.tally.kept,
+            self.tally.count,
+            tuple(self.unjudged),
+        )

@@ -45,6 +45,10 @@ class PublishedViolations:
         """Note that nobody can tell what should have been published of a stream."""
         self._unknown.add(stream)
 
+    def leave_rest_open(self) -> None:
+        """Note that nobody can tell about streams of which nothing has been said yet."""
+        self._unknown.update(self._published.keys() - self._expected.keys())
+
     def breaches(self) -> Iterator[Breach]:
         """Yield what is missing and what is too much, stream by stream."""
         for stream in dict.fromkeys([*self._expected, *self._published]):

@@ -20,7 +20,7 @@ from dyknow.streams.process import Element
 from dyknow.streams.sample import Sample
 from dyknow.time import TimePoint
 
-__all__ = ["Recomputation", "unknown_behind"]
+__all__ = ["Recomputation", "Recorded", "unknown_behind"]
 
 
 def unknown_behind(
@@ -115,7 +115,7 @@ class Recomputation:
     def _input(self, stream: DeclaredStream) -> tuple[Label, Policy]:
         topic = Label(stream.topic)
         if topic in self._streams and not {topic, stream.provider} & self._distrusted:
-            self._kernel.add_source(topic, _Recorded(self._streams, topic))
+            self._kernel.add_source(topic, Recorded(self._streams, topic))
             return topic, ANYTHING
         if topic in self._distrusted:
             self._bases.add(Basis.CORRECTED)
@@ -128,13 +128,13 @@ class Recomputation:
         known = self._streams.topics - self._distrusted
         is_lost = label not in known and any(unknown_behind(self._network, label, known))
         if label in known or (is_lost and label in self._streams):
-            self._kernel.add_source(label, _Recorded(self._streams, label))
+            self._kernel.add_source(label, Recorded(self._streams, label))
             return
         self._bases.add(Basis.CORRECTED if label in self._distrusted else Basis.COMPUTED)
         self._add(self._network.processes[label])
 
 
-class _Recorded:
+class Recorded:
     """A source of what was recorded of a stream."""
 
     def __init__(self, streams: KnownStreams, topic: str) -> None:

@@ -1,7 +1,10 @@
 """The execution that a recording is of."""
 
+import json
 from collections.abc import Collection, Iterator, Sequence
 
+from dyknow.judging.declared import OUTPUT
+from dyknow.kpl.description import NetworkDescription
 from dyknow.recordings.channels import ChannelRole
 from dyknow.recordings.recording import Recording
 from dyknow.runtime.subscriptions import StreamViolation
@@ -19,7 +22,6 @@ class RecordedExecution:
 
     Args:
         recording: The recording.
-        outputs: The names of the output streams that were asked for.
         until: The end of the run; by default the last time at which something was recorded.
         without: Topics that are no part of the execution.
     """
@@ -27,11 +29,9 @@ class RecordedExecution:
     def __init__(
         self,
         recording: Recording,
-        outputs: Collection[str],
         until: TimePoint | None = None,
         without: Collection[str] = (),
     ) -> None:
-        self.outputs = outputs
         self._recording = recording
         streams = recording.streams
         self.topics: Collection[str] = [
@@ -39,6 +39,7 @@ class RecordedExecution:
             for topic, stream in streams.items()
             if stream.role in (ChannelRole.GENERATOR, ChannelRole.STREAM) and topic not in without
         ]
+        self.existing = _existing(recording.metadata.get("network"))
         last = max((streams[topic].last or 0 for topic in self.topics), default=0)
         self.until = TimePoint(max(last, until or 0) if recording.damage is None else last - 1)
 
@@ -59,3 +60,18 @@ class RecordedExecution:
             for each in self._recording.violations()
             if each.violation.noticed_at <= self.until
         ]
+
+
+def _existing(network: str | None) -> frozenset[str] | None:
+    """Return the topics of all streams that the description of a network tells of."""
+    if network is None:
+        return None
+    description: NetworkDescription = json.loads(network)
+    labels = [each["label"] for each in description["generators"]]
+    inputs = [
+        f"{each['label']}/{stream['number']}"
+        for each in description["generators"]
+        for stream in each["inputs"]
+    ]
+    outputs = [f"{OUTPUT}/{each['name']}" for each in description["outputs"]]
+    return frozenset([*labels, *inputs, *outputs])

@@ -4,25 +4,25 @@ Processes keep a state, so that each can be used once. Whoever judges has to be 
 whole network as often as it takes; chance begins anew each time.
 """
 
-from collections.abc import Callable, Collection
+from collections.abc import Collection
+from dataclasses import replace
 from functools import partial
 from types import MappingProxyType
 from typing import Any, cast
 
+from dyknow.judging.changing import Changing, MakeNetwork
 from dyknow.judging.declared import DeclaredNetwork, DeclaredProcess, DeclaredStream
 from dyknow.judging.sorts import Sorts, sort_test
+from dyknow.kpl.names import descendants
 from dyknow.kpl.network import Network
 from dyknow.kpl.parser import parse_specification
-from dyknow.kpl.syntax import Sort, SourceDeclaration
+from dyknow.kpl.syntax import Configuration, Mediation, Sort, SourceDeclaration
 from dyknow.runtime.generators import Label
 from dyknow.runtime.processes import Kind
 from dyknow.streams.process import ComputationalUnit, Source
 from dyknow.streams.sample import Sample
 
-__all__ = ["MakeNetwork", "declared_network"]
-
-MakeNetwork = Callable[[], Network]
-"""Makes the network of a specification, which has not run yet."""
+__all__ = ["declared_network"]
 
 NO_SORTS: Sorts = MappingProxyType({})
 """Nothing is known about any sort."""
@@ -46,17 +46,21 @@ def declared_network(
         sort = described[label]["sort"]
         is_source = running.kind is Kind.SOURCE
         is_said_again = is_source and described[label]["process"] in again
+        is_mediation = described[label]["kind"] == "mediation"
+        can_be_used = not is_source and not is_mediation
         processes[label] = DeclaredProcess(
             label,
             _inputs(network, label),
             make_source=partial(workshop.source, label) if is_said_again else None,
-            make_unit=None if is_source else partial(workshop.unit, label),
+            make_unit=partial(workshop.unit, label) if can_be_used else None,
+            is_mediation=is_mediation,
             sort=sort,
             sort_test=sort_test(_sort(sort), sorts),
             promise=running.output_policy,
         )
     outputs = tuple(_output(network, name) for name in network.outputs)
-    return DeclaredNetwork(processes, outputs)
+    declared = DeclaredNetwork(processes, outputs)
+    return replace(declared, changing=_changing(make, network, declared))
 
 
 class _Workshop:
@@ -87,6 +91,15 @@ class _Workshop:
         self.network = self._make()
         processes = self.network.kernel.processes
         self._unused = {label: running.process for label, running in processes.items()}
+
+
+def _changing(make: MakeNetwork, network: Network, declared: DeclaredNetwork) -> Changing | None:
+    """Return what changes by itself in a network, if anything does."""
+    kinds = (Configuration, Mediation)
+    if not any(isinstance(each, kinds) for each in descendants(network.specification)):
+        return None
+    promises = {label: process.promise for label, process in declared.processes.items()}
+    return Changing(make, network.specification, promises, declared.static_topics)
 
 
 def _inputs(network: Network, label: Label) -> tuple[DeclaredStream, ...]:

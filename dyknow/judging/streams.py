@@ -52,6 +52,11 @@ class KnownStreams:
         """The topics of the recorded streams."""
         return self._topics
 
+    def may_have_been(self, topic: str) -> bool:
+        """Return whether there may have been a stream of this topic, recorded or not."""
+        existing = self._execution.existing
+        return topic in self._topics or existing is None or topic in existing
+
     def heartbeats(self, topic: str) -> Sequence[Heartbeat]:
         """Return the heartbeats of a stream."""
         return self._contents(topic).heartbeats

@@ -70,4 +70,4 @@ class SmallNetwork:
             kept = streams.setdefault(f"output/{name}", []).append
             kernel.subscribe(Label(provider), kept, policy, beat=kept)
         kernel.run(until)
-        return Interpretation(kernel.now, streams, tuple(self.outputs), violations)
+        return Interpretation(kernel.now, streams, violations)
