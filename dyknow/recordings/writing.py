@@ -102,15 +102,19 @@ class _Unbuffered:
     """A new file in which everything stands as soon as it has been written."""
 
     def __init__(self, path: Path) -> None:
+        self._path = path
         self._descriptor = os.open(path, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o666)
         self._position = 0
         self._is_open = True
 
     def write(self, data: bytes) -> int:
-        """Write all of *data*."""
+        """Write all of *data*; what the system objects names the file."""
         rest = memoryview(data)
-        while rest:
-            rest = rest[os.write(self._descriptor, rest) :]
+        try:
+            while rest:
+                rest = rest[os.write(self._descriptor, rest) :]
+        except OSError as fault:
+            raise OSError(fault.errno, fault.strerror, str(self._path)) from fault
         self._position += len(data)
         return len(data)
 

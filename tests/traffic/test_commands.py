@@ -1,6 +1,8 @@
 """The command line as its users meet it: what is printed where, and the exit status."""
 
+import errno
 import json
+import os
 import re
 import signal
 import subprocess
@@ -100,6 +102,16 @@ def test_scenarios_are_listed(traffic):
         (("run", "--view", "truth", "--sumocfg", "file"), "file:1:1: not well-formed XML"),
         (("report", "none"), "'none' holds no finished run: No such file"),
         (("report", "file"), "'file' holds no finished run: Not a directory"),
+        ((*TRUTH, "--record", "x.bag"), "--record: expected a name that ends in .mcap"),
+        ((*TRUTH, "--record", "no/x.mcap"), "--record: expected a file in a folder that exists"),
+        ((*TRUTH, "--streams", "cars"), "--streams: expected nothing, because it only has a"),
+        ((*TRUTH, "--specification", "none"), "--specification: expected a file that can be"),
+        (("replay", "none.mcap"), "none.mcap: No such file or directory"),
+        (("replay", "."), ".: Is a directory"),
+        (("replay", "file"), "file: expected a recording in MCAP, found something else"),
+        (("replay", "file", "--record", "file"), "--record: expected a name that ends in .mcap"),
+        (("recover", "file", "x.mcap"), "file: expected a recording in MCAP, found"),
+        (("recover", "none", "x.mcap"), "none: No such file or directory"),
         (("check", "file"), "expected a name that ends in one of .kpl"),
         (("network", "show", "none.net.xml"), "none.net.xml: no such file"),
         (("network", "show", "file"), "file:1:1: broken XML: syntax error"),
@@ -265,6 +277,65 @@ def test_a_run_prints_one_document_and_writes_one_folder(traffic):
 
 
 @pytest.mark.sumo
+def test_a_replay_prints_what_a_run_does(recorded_run, traffic):
+    """One JSON document, or tables and how many streams are the same; a folder if asked for."""
+    status, out, err = traffic("replay", str(recorded_run.path), "--json", "--out", "x")
+    document = json.loads(out)
+
+    assert (status, err) == (0, "replay written to x\n")
+    assert document["replay"]["differences"] == []
+    assert document["score"] == json.loads(recorded_run.result.model_dump_json())["score"]
+    assert out == Path("x/result.json").read_text()
+    status, out, err = traffic("report", "x")
+    assert status == 0
+    assert f"{document['replay']['compared']} streams identical" in out
+
+
+@pytest.mark.sumo
+def test_other_streams_from_the_same_are_a_bug(recorded_run, traffic, monkeypatch):
+    """The first difference of each stream is told, and the status is 1."""
+    monkeypatch.setattr("traffic.features.moving.Moving.push", lambda *_: ())
+
+    status, out, err = traffic("replay", str(recorded_run.path))
+
+    assert status == 1
+    assert "differs moving_cars at 0 ms" in out
+    assert err == "traffic: the same specification on the same input gave other streams\n"
+
+
+@pytest.mark.sumo
+def test_what_is_whole_is_recovered(recorded_run, traffic):
+    """It is said what was saved; the new file replays, and says that a part is missing."""
+    Path("cut.mcap").write_bytes(recorded_run.path.read_bytes()[:400_000])
+
+    status, out, err = traffic("recover", "cut.mcap", "x.mcap")
+    replayed, shown, _ = traffic("replay", "x.mcap")
+
+    assert (status, replayed, err) == (0, 0, "")
+    assert re.search(r"x.mcap: \d+ messages of \d+ whole chunks, up to \d+ ms", out)
+    assert "a part of the run is missing: it ends at" in " ".join(shown.split())
+    status, _, err = traffic("recover", "cut.mcap", "x.mcap")
+    assert status == 2
+    assert "x.mcap: there is a file of this name already" in err
+
+
+@pytest.mark.sumo
+def test_a_full_disk_is_told(traffic, monkeypatch):
+    """What has been written stays partial; the folder of the run is removed."""
+
+    def fail(*_: object) -> int:
+        raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+
+    options = ("--duration", "3s", "--out", "x", "--record", "x.mcap")
+    monkeypatch.setattr("dyknow.recordings.writing.os.write", fail)
+    status, out, err = traffic(*TRUTH, *options)
+
+    assert (status, out) == (2, "")
+    assert err == "traffic: x.mcap.partial: No space left on device\n"
+    assert {path.name for path in Path().iterdir()} <= {"x.mcap.partial"}
+
+
+@pytest.mark.sumo
 def test_names_that_look_like_markup_are_printed_as_they_are(traffic):
     """Simulators allow nearly every character in a name."""
     Path("[b]s.toml").write_text(SCENARIO)
@@ -313,11 +384,11 @@ def test_a_run_through_the_cameras_has_every_stage():
     ],
 )
 def test_a_run_that_is_stopped_leaves_nothing(number, status, message):
-    """No folder, no film, no traceback."""
+    """No folder, no film, no traceback; of a recording what there is, under a partial name."""
     running = subprocess.Popen(
         [
             *(sys.executable, "-m", "traffic", "run", "crossing", "--duration", "1h"),
-            *("--overlay", "film.mp4"),
+            *("--overlay", "film.mp4", "--record", "x.mcap"),
         ],
         stdout=subprocess.PIPE,
         stderr=subprocess.PIPE,
@@ -329,7 +400,8 @@ def test_a_run_that_is_stopped_leaves_nothing(number, status, message):
     out, err = running.communicate(timeout=60)
 
     assert (running.returncode, out, err) == (status, "", message)
-    assert not [path for path in Path().rglob("*") if path.name != "runs"]
+    left = {path.name for path in Path().rglob("*")}
+    assert left <= {"runs", "x.mcap.partial"}
 
 
 def _wait_for(path: Path) -> None:
