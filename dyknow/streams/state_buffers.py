@@ -203,6 +203,10 @@ class Buffer:
         """Forget the samples that no time-point from *time* on needs."""
         del self.samples[: max(0, self._place(time) - 1)]
 
+    def forget_beyond(self, time: TimePoint) -> None:
+        """Forget the samples that no time-point up to *time* needs."""
+        del self.samples[self._place(time) + 1 :]
+
     def thin_out(self, origin: TimePoint, period: Duration) -> None:
         """Forget the last sample but one if no time-point of the grid needs it any more."""
         samples = self.samples

@@ -174,17 +174,15 @@ class Synchronisation:
     def _take_outside(self, buffer: Buffer, sample: Sample[Any]) -> None:
         """Take in a sample that is not for a state to come, but may serve to approximate one."""
         valid_time = sample.valid_time
-        if valid_time > self._ends:
-            is_needed = self.policy.is_linear and buffer.reached <= self._ends
-        else:
-            is_needed = self.policy.is_approximated
-            if valid_time <= buffer.late:
-                self._reports.late(buffer.number, sample, self._settled)
-            elif valid_time >= self._begins and self._times.has(valid_time):
-                self._reports.repeated(buffer.number, sample)
-        if is_needed:
+        is_beyond = valid_time > self._ends
+        if not is_beyond and valid_time <= buffer.late:
+            self._reports.late(buffer.number, sample, self._settled)
+        elif self._begins <= valid_time <= self._ends and self._times.has(valid_time):
+            self._reports.repeated(buffer.number, sample)
+        if self.policy.is_linear or (self.policy.is_approximated and not is_beyond):
             buffer.add(sample)
             buffer.forget(self._settled)
+            buffer.forget_beyond(self._ends)
         else:
             buffer.note(valid_time)
 
