@@ -284,6 +284,33 @@ def test_sync_with_a_sample_period():
     assert states == "1:ax 3:bx@4 5:cz@6 7:dz@8"
 
 
+# The example of docs/synchronisation.md
+
+
+@pytest.mark.parametrize(
+    ("policy", "expected"),
+    [
+        (StatePolicy(), ""),
+        (StatePolicy(approximation=MOST_RECENT), "10:s0w1@40 40:s1w1@100 70:s1w2@100"),
+        (
+            StatePolicy(Occasion.ALL_UPDATES, approximation=MOST_RECENT),
+            "10:s0w1@40 70:s1w2@100",
+        ),
+        (
+            StatePolicy(Occasion.SAMPLED, ms(20), approximation=MOST_RECENT),
+            "10:s0w1@40 30:s0w1@100 50:s1w1@100 70:s1w2@100",
+        ),
+    ],
+)
+def test_the_example_of_the_guide(policy, expected):
+    """The guide says the truth about the states of each kind, and about when they are made."""
+    inputs = (Policy(change=SampleEvery(ms(40))), Policy())
+
+    states, _ = _run(policy, "0:s0@5 40:s1@45 80:s2@85", "10:w1@40 70:w2@100", inputs=inputs)
+
+    assert states == expected
+
+
 # What is missing
 
 
