@@ -6,6 +6,7 @@ from typing import Protocol
 
 from dyknow.judging.sorts import SortTest
 from dyknow.judging.streams import KnownStreams
+from dyknow.runtime.failures import OnFailure
 from dyknow.runtime.generators import Label
 from dyknow.runtime.subscriptions import StreamViolation
 from dyknow.streams.policy import Policy
@@ -77,6 +78,7 @@ class DeclaredProcess:
         sort_test: Tells what is wrong with a value that is not of this sort; None if it is not
             known what the sort contains.
         promise: The output policy, which all samples keep.
+        on_failure: Whether the whole network stops when the process fails.
     """
 
     label: Label
@@ -87,6 +89,7 @@ class DeclaredProcess:
     sort: str = "any"
     sort_test: SortTest | None = None
     promise: Policy = ANYTHING
+    on_failure: OnFailure = OnFailure.STOP
 
     @property
     def is_source(self) -> bool:

@@ -23,6 +23,7 @@ from dyknow.judging.terms import TermBreaches, policy_breaches
 from dyknow.judging.wellformed import heartbeat_breaches, order_breaches, sort_breaches
 from dyknow.runtime.generators import Label
 from dyknow.runtime.subscriptions import StreamViolation
+from dyknow.streams.policy import Policy, SampleEvery
 from dyknow.streams.sample import Sample
 
 __all__ = ["KEPT", "judge"]
@@ -194,6 +195,8 @@ class _Judge:
             return
         draft.basis = Basis.RECORDED
         recorded, provider = self._streams[stream.topic], self._streams[stream.provider]
+        if _may_vary(stream.policy) and not _are_alike(recorded, adapted):
+            self._published.leave_open(_violated(stream))
         published = self._published.of(_violated(stream))
         term = TermBreaches(stream, recorded, provider, adapted, self._until)
         draft.tally.add(term.all())
@@ -222,6 +225,15 @@ class _Answer:
         self.tally = Tally(keep)
         self.basis = Basis.NOTHING
         self.violations: Sequence[StreamViolation] = ()
+
+
+def _may_vary(policy: Policy) -> bool:
+    """Return whether a stream may have had another period for a while, because of the load."""
+    return isinstance(policy.change, SampleEvery) and policy.change.longest is not None
+
+
+def _are_alike(one: Sequence[Sample[Any]], other: Sequence[Sample[Any]]) -> bool:
+    return [each.valid_time for each in one] == [each.valid_time for each in other]
 
 
 def _violated(stream: DeclaredStream) -> ViolatedStream:

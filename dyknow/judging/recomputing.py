@@ -107,7 +107,8 @@ class Recomputation:
             return
         if process.make_unit is not None:
             inputs = [self._input(stream) for stream in process.inputs]
-            self._kernel.add_unit(process.label, process.make_unit(), inputs)
+            unit, on_failure = process.make_unit(), process.on_failure
+            self._kernel.add_unit(process.label, unit, inputs, on_failure=on_failure)
         else:
             assert process.make_source is not None  # whoever recomputes has looked
             self._kernel.add_source(process.label, process.make_source())

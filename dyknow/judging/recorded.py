@@ -17,8 +17,9 @@ __all__ = ["RecordedExecution"]
 class RecordedExecution:
     """What a recording says of the execution that it is of.
 
-    Of a recording that was cut off, the last instant is left out: nobody knows what else there
-    was. What stands there for viewers alone is no part of the execution.
+    Of a recording that was cut off, or that ended with an error, the last instant is left out:
+    nobody knows what else there was. What stands there for viewers alone is no part of the
+    execution.
 
     Args:
         recording: The recording.
@@ -41,7 +42,8 @@ class RecordedExecution:
         ]
         self.existing = _existing(recording.metadata.get("network"))
         last = max((streams[topic].last or 0 for topic in self.topics), default=0)
-        self.until = TimePoint(max(last, until or 0) if recording.damage is None else last - 1)
+        is_whole = recording.damage is None and recording.path.suffix != ".partial"
+        self.until = TimePoint(max(last, until or 0) if is_whole else last - 1)
 
     def contents(self, topic: str) -> Iterator[Element]:
         """Yield samples and heartbeats of a stream.

@@ -57,6 +57,7 @@ def declared_network(
             sort=sort,
             sort_test=sort_test(_sort(sort), sorts),
             promise=running.output_policy,
+            on_failure=running.on_failure,
         )
     outputs = tuple(_output(network, name) for name in network.outputs)
     declared = DeclaredNetwork(processes, outputs)
