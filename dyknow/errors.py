@@ -29,6 +29,7 @@ __all__ = [
     "SortMismatchError",
     "SpecificationError",
     "SpecificationErrors",
+    "StateOrderError",
     "UnknownNameError",
     "ValueNotAvailableError",
     "WrongNumberOfInputsError",
@@ -205,6 +206,20 @@ class FeatureError(DyKnowError):
     def __init__(self, feature: str, expected: str, found: str) -> None:
         super().__init__(f"feature '{feature}': expected {expected}, found {found}")
         self.feature = feature
+
+
+class StateOrderError(DyKnowError, ValueError):
+    """A state is not later than the one before.
+
+    Attributes:
+        time: The time of the state.
+        last: The time of the state before.
+    """
+
+    def __init__(self, time: TimePoint, last: TimePoint) -> None:
+        super().__init__(f"states must be in order of time: {time} ns after {last} ns")
+        self.time = time
+        self.last = last
 
 
 class SpecificationErrors(ExceptionGroup[SpecificationError]):

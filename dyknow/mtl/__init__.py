@@ -1,21 +1,25 @@
 """Metric temporal logic over streams of states: the language, its meaning, and progression.
 
 Read in this order: `syntax`, `grammar.lark`, `parser`, `printer`, `check`, `quantifiers`,
-`semantics`, `columns`, `instants`, `graph`, `residuals`, `wording`, `progression`, `monitors`.
+`semantics`, `columns`, `instants`, `graph`, `residuals`, `wording`, `progression`, `monitors`,
+`symbols`, `groups`.
 """
 
 from dyknow.mtl.columns import evaluate_atoms
+from dyknow.mtl.groups import FormulaGroup
 from dyknow.mtl.monitors import Monitor, MonitorColumns
 from dyknow.mtl.parser import parse_formula
 from dyknow.mtl.printer import text_from_formula
 from dyknow.mtl.progression import ProgressionTable
-from dyknow.mtl.syntax import Formula, Verdict
+from dyknow.mtl.syntax import Formula, TimeModel, Verdict
 
 __all__ = [
     "Formula",
+    "FormulaGroup",
     "Monitor",
     "MonitorColumns",
     "ProgressionTable",
+    "TimeModel",
     "Verdict",
     "evaluate_atoms",
     "parse_formula",

@@ -5,16 +5,21 @@ said with these and negation. A *literal* is a node or its negation, written as 
 `2 * node + 1` if negated and `2 * node` if not. Literals are simplified as they are made:
 constants disappear, `f and not f` is false, and `eventually [a, b] eventually [c, d] f` is
 `eventually [a + c, b + d] f`.
+
+The graph is always about the time model `hold`. In the model `points` there is one more
+proposition, *sampled*, which holds at the time-points of the states alone: operators speak of
+`sampled and f` where they want a witness and of `sampled -> f` where they want all instants.
 """
 
 from dataclasses import dataclass
 
 from dyknow.mtl import syntax
 from dyknow.mtl.instants import FUTURE
-from dyknow.mtl.syntax import Atom, Formula, Interval
+from dyknow.mtl.syntax import Atom, Formula, Interval, TimeModel
 
 __all__ = [
     "FALSITY",
+    "SAMPLED",
     "TRUTH",
     "All",
     "FormulaGraph",
@@ -34,9 +39,13 @@ FALSITY: Literal = 1
 
 @dataclass(frozen=True, slots=True)
 class Proposition:
-    """An atom, by its number."""
+    """An atom, by its number, or `SAMPLED`."""
 
     atom: int
+
+
+SAMPLED = -1
+"""In place of the number of an atom: whether the instant is the time-point of a state."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -68,9 +77,11 @@ class FormulaGraph:
         formulas: A formula that the node stands for.
         atoms: The atoms in order of their first occurrence.
         root: The literal of the whole formula.
+        time_model: The time model.
     """
 
-    def __init__(self, formula: Formula) -> None:
+    def __init__(self, formula: Formula, time_model: TimeModel = TimeModel.HOLD) -> None:
+        self.time_model = time_model
         self.nodes: list[GraphNode] = []
         self.temporal: list[bool] = []
         self.formulas: list[Formula] = []
@@ -89,15 +100,18 @@ class FormulaGraph:
         formula = self.formulas[literal >> 1]
         return negation(formula) if literal & 1 else formula
 
-    def plain_values(self, bits: int) -> list[bool]:
+    def plain_values(self, bits: int, *, sampled: bool = True) -> list[bool]:
         """Return the value of each node without an `until`; of the others, False.
 
         Args:
             bits: The truth of atom number i in bit i.
+            sampled: Whether it is the time-point of a state.
         """
         values: list[bool] = []
         for node in self.nodes:
             match node:
+                case Proposition(atom) if atom == SAMPLED:
+                    values.append(sampled)
                 case Proposition(atom):
                     values.append(bool(bits >> atom & 1))
                 case All(literals):
@@ -197,12 +211,19 @@ class FormulaGraph:
             return FALSITY
         if left == FALSITY:
             return right
+        if self.time_model is TimeModel.POINTS:
+            left, right = self._sampled(left ^ 1) ^ 1, self._sampled(right)
         inner = self.nodes[right >> 1]
         nested = left == TRUTH and not right & 1 and isinstance(inner, UntilNode)
         if nested and isinstance(inner, UntilNode) and inner.left == TRUTH:
             most = FUTURE if FUTURE in {most, inner.most} else most + inner.most
             least, right = least + inner.least, inner.right
         return self._make(UntilNode(least, most, left, right), formula)
+
+    def _sampled(self, literal: Literal) -> Literal:
+        """Return what holds where *literal* does at the time-point of a state."""
+        sampled = self._make(Proposition(SAMPLED), syntax.TRUE)
+        return self._all([sampled, literal], self.formula(literal))
 
 
 def negation(formula: Formula) -> Formula:  # noqa: PLR0911

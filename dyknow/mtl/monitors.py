@@ -1,7 +1,7 @@
 """Monitors: a formula followed along one stream of states, or along many at once.
 
-Both rest on a `ProgressionTable`, which several of them may share. The time model is `hold`
-(see `dyknow.mtl.semantics`): a state holds from its time until the next state arrives.
+Both rest on a `ProgressionTable`, which several of them may share, and which knows the time
+model (see `dyknow.mtl.semantics`).
 """
 
 from collections.abc import Mapping
@@ -10,11 +10,12 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from dyknow.errors import StateOrderError
 from dyknow.mtl.progression import ProgressionTable, Residuals, Truths, Verdicts
-from dyknow.mtl.syntax import Formula, Verdict
+from dyknow.mtl.syntax import Formula, TimeModel, Verdict
 from dyknow.time import Duration, TimePoint
 
-__all__ = ["Monitor", "MonitorColumns"]
+__all__ = ["Monitor", "MonitorColumns", "check_order"]
 
 
 class MonitorColumns:
@@ -88,9 +89,14 @@ class Monitor:
         table: The formula and its residuals; may be shared with other monitors.
     """
 
-    def __init__(self, formula: Formula | ProgressionTable) -> None:
+    def __init__(
+        self,
+        formula: Formula | ProgressionTable,
+        time_model: TimeModel | str = TimeModel.HOLD,
+    ) -> None:
+        """Begin before the first state; a table given has a time model already."""
         if not isinstance(formula, ProgressionTable):
-            formula = ProgressionTable(formula)
+            formula = ProgressionTable(formula, time_model=time_model)
         self.table: ProgressionTable = formula
         self._residual = formula.initial
         self._time: TimePoint | None = None
@@ -104,10 +110,14 @@ class Monitor:
             state: The features by their printed terms; more than needed may be given.
 
         Raises:
-            FeatureError: A feature is missing, of the wrong kind, or NaN.
+            FeatureError: A feature is missing, of the wrong kind, or NaN; nothing has changed.
+            StateOrderError: The state is not later than the one before; nothing has changed.
         """
+        return self.step_bits(now, self.table.columns.of_state(state))
+
+    def step_bits(self, now: TimePoint, bits: int) -> Verdict:
+        """Take in a state as `step` does; bit i of *bits* is the truth of `table.atoms[i]`."""
         elapsed = _elapsed(self._time, now)
-        bits = self.table.columns.of_state(state)
         self._residual = self.table.successor(self._residual, bits, elapsed)
         self._time = now
         self.table.collect_when_full()
@@ -135,8 +145,11 @@ class Monitor:
 
 def _elapsed(last: TimePoint | None, now: TimePoint) -> Duration:
     """Return the time since the last state; one nanosecond if there was none."""
-    if last is None:
-        return Duration(1)
-    if now <= last:
-        raise ValueError(f"states must be in order of time: {now} ns after {last} ns")
-    return Duration(now - last)
+    check_order(last, now)
+    return Duration(1 if last is None else now - last)
+
+
+def check_order(last: TimePoint | None, now: TimePoint) -> None:
+    """Raise `StateOrderError` unless *now* is later than *last*, if there was a last state."""
+    if last is not None and now <= last:
+        raise StateOrderError(now, last)

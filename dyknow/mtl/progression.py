@@ -18,15 +18,18 @@ from dyknow.mtl.check import check
 from dyknow.mtl.columns import AtomColumns
 from dyknow.mtl.graph import FormulaGraph
 from dyknow.mtl.residuals import Progression, Residual
-from dyknow.mtl.syntax import FALSE, TRUE, Atom, Formula, Verdict
+from dyknow.mtl.syntax import FALSE, TRUE, Atom, Formula, TimeModel, Verdict
 from dyknow.mtl.wording import formula_from_residual
 from dyknow.time import Duration
 
-__all__ = ["Holder", "ProgressionTable", "Residuals", "Truths", "Verdicts"]
+__all__ = ["DEFAULT_LIMIT", "Holder", "ProgressionTable", "Residuals", "Truths", "Verdicts"]
 
 Residuals = npt.NDArray[np.int64]
 Truths = npt.NDArray[np.bool_]
 Verdicts = npt.NDArray[np.int8]
+
+DEFAULT_LIMIT = 1 << 15
+"""How many residuals a table keeps."""
 
 _FALSE, _TRUE, _INITIAL = 0, 1, 2
 _CELLS = 1 << 21
@@ -58,18 +61,26 @@ class ProgressionTable:
             their truth.
         columns: The same, ready to be evaluated over columns.
         initial: The number of the residual before the first state.
+        time_model: At which time-points there is a state.
         limit: How many residuals are kept before unused ones are forgotten.
     """
 
-    def __init__(self, formula: Formula, limit: int = 1 << 15) -> None:
+    def __init__(
+        self,
+        formula: Formula,
+        limit: int = DEFAULT_LIMIT,
+        time_model: TimeModel | str = TimeModel.HOLD,
+    ) -> None:
         """Make the table.
 
         Raises:
             SpecificationErrors: An interval ends before it begins, or the like.
-            ValueError: There is a quantifier in the formula; see `dyknow.mtl.quantifiers`.
+            ValueError: There is a quantifier in the formula (see `dyknow.mtl.quantifiers`), or
+                no time model of this name.
         """
         check(formula)
-        self._graph = graph = FormulaGraph(formula)
+        self.time_model = TimeModel(time_model)
+        self._graph = graph = FormulaGraph(formula, self.time_model)
         self.formula = formula
         self.atoms: tuple[Atom, ...] = graph.atoms
         self.columns = AtomColumns(self.atoms)

@@ -45,7 +45,7 @@ from dyknow.mtl.instants import (
     until,
     without,
 )
-from dyknow.mtl.syntax import Verdict
+from dyknow.mtl.syntax import TimeModel, Verdict
 from dyknow.time import Duration
 
 __all__ = ["Knowledge", "Obligation", "Progression", "Residual"]
@@ -108,7 +108,8 @@ class Residual:
     Attributes:
         obligations: For each operator or state formula at the top level, its state.
         knowledge: For each node of the graph, what is known and still asked for.
-        held: For each node of the graph, whether it is a state formula that holds now.
+        held: For each node of the graph, whether it is a state formula that holds from now
+            until the next state.
     """
 
     obligations: tuple[_ObligationState, ...]
@@ -129,6 +130,8 @@ class Progression:
         self.owed = tuple(dict.fromkeys(self._top_level(graph.root)))
         self._longest = sum(2 + _finite_bounds(node) for node in graph.nodes)
         self._place = {literal: at for at, literal in enumerate(self.owed)}
+        between_states = graph.plain_values(0, sampled=False)
+        self._between = between_states if graph.time_model is TimeModel.POINTS else None
 
     def _top_level(self, literal: Literal) -> Iterator[Literal]:
         """Yield the nodes that say something about the first instant, as positive literals."""
@@ -334,7 +337,8 @@ class Progression:
             known[number] = known[number].within(asked[number])
             if asked[number] and self._graph.temporal[number]:
                 self._ask_parts(asked, node, _open(known[number], asked[number]))
-        still = [bool(value and a and a[-1] > 1) for value, a in zip(held, asked, strict=True)]
+        after = self._between or held
+        still = [bool(value and a and a[-1] > 1) for value, a in zip(after, asked, strict=True)]
         return Residual(obligations, tuple(known), tuple(still))
 
     def _ask_parts(self, asked: list[Instants], node: GraphNode, pending: Instants) -> None:

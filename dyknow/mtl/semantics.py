@@ -1,10 +1,14 @@
 """The meaning of formulas over a finished trace, written down naively; the oracle of the tests.
 
-Time model `hold`: a state holds from its time until the next one, at every nanosecond, so that
-there is exactly one state at each time-point (Heintz 2009, 7.5.2, with a time-point of one
-nanosecond). A trace is known from the time of its first state up to and including the time of
-its last one; whether there are states after that is not known. A formula is about the time of
-the first state.
+A trace is known from the time of its first state up to and including the time of its last one;
+whether there are states after that is not known. A formula is about the time of the first
+state. There are two time models:
+
+- `hold`: a state holds from its time until the next one, at every nanosecond, so that there is
+  exactly one state at each time-point (Heintz 2009, 7.5.2, with a time-point of one nanosecond);
+- `points`: there are the time-points of the states and no others. An interval in which none of
+  them lies is empty: `always` is true of it, `eventually` false. When the next state will come
+  is not known, so an interval that reaches beyond the last state may hold more of them.
 
 The verdict is that of Kleene's strong three-valued logic, operator by operator: what is not
 known yet counts as undecided, and a formula is decided as soon as its known parts decide it
@@ -14,12 +18,12 @@ on one another may be decided later than its meaning allows: `eventually [0, 10]
 [0, 20] q` is true in any case, but undecided before q has come or 10 ms are over.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
 from dyknow.mtl import syntax
 from dyknow.mtl.columns import AtomColumns
-from dyknow.mtl.syntax import Atom, Formula, Interval, Verdict
+from dyknow.mtl.syntax import Atom, Formula, Interval, TimeModel, Verdict
 from dyknow.time import TimePoint
 
 __all__ = ["Trace", "deciding_state", "evaluate"]
@@ -28,35 +32,38 @@ Trace = Sequence[tuple[TimePoint, Mapping[str, Any]]]
 """Times, strictly ascending, and the features of the state at each, by their printed terms."""
 
 
-def evaluate(formula: Formula, trace: Trace) -> Verdict:
+def evaluate(formula: Formula, trace: Trace, time_model: TimeModel = TimeModel.HOLD) -> Verdict:
     """Return the verdict on *formula*, which has no quantifiers, after all states of *trace*.
 
-    Takes a time proportional to the length of the trace in nanoseconds, to the power of the
-    nesting of operators.
+    Takes a time proportional to the number of time-points (in the model `hold`, of nanoseconds)
+    to the power of the nesting of operators.
     """
     if not trace:
         return Verdict.UNDECIDED
-    return _Meaning(trace).at(formula, trace[0][0])
+    return _Meaning(trace, time_model).at(formula, trace[0][0])
 
 
-def deciding_state(formula: Formula, trace: Trace) -> tuple[Verdict, int | None]:
+def deciding_state(
+    formula: Formula, trace: Trace, time_model: TimeModel = TimeModel.HOLD
+) -> tuple[Verdict, int | None]:
     """Return the verdict and the index of the first state that decides it, if any does."""
     for index in range(len(trace)):
-        verdict = evaluate(formula, trace[: index + 1])
+        verdict = evaluate(formula, trace[: index + 1], time_model)
         if verdict is not Verdict.UNDECIDED:
             return verdict, index
     return Verdict.UNDECIDED, None
 
 
 class _Meaning:
-    """The verdicts on formulas at the instants of one trace."""
+    """The verdicts on formulas at the time-points of one trace."""
 
-    def __init__(self, trace: Trace) -> None:
+    def __init__(self, trace: Trace, time_model: TimeModel) -> None:
         self._trace = trace
+        self._time_model = time_model
         self._end = trace[-1][0]
 
     def at(self, formula: Formula, now: int) -> Verdict:  # noqa: C901, PLR0911, PLR0912
-        """Return the verdict on *formula* at an instant of the trace."""
+        """Return the verdict on *formula* at a time-point of the trace."""
         match formula:
             case syntax.Truth(value):
                 return Verdict.TRUE if value else Verdict.FALSE
@@ -86,22 +93,28 @@ class _Meaning:
         return Verdict.TRUE if AtomColumns((atom,)).of_state(state) else Verdict.FALSE
 
     def _over(self, within: Interval, body: Formula, now: int) -> list[Verdict]:
-        """Return the verdicts on *body* at the known instants of the interval, and the rest."""
-        instants = range(now + within.start, self._last(within, now) + 1)
-        return [self.at(body, t) for t in instants] + self._unknown(within, now)
+        """Return the verdicts on *body* in the known part of the interval, and in the rest."""
+        known = self._time_points(now + within.start, self._last(within, now))
+        return [self.at(body, t) for t in known] + self._unknown(within, now)
 
     def _until(self, within: Interval, left: Formula, right: Formula, now: int) -> Verdict:
         verdict, left_so_far = Verdict.FALSE, Verdict.TRUE
-        for t in range(now, self._last(within, now) + 1):
+        for t in self._time_points(now, self._last(within, now)):
             if t >= now + within.start:
                 verdict = max(verdict, min(left_so_far, self.at(right, t)))
             left_so_far = min(left_so_far, self.at(left, t))
         return max([verdict, *(min(left_so_far, v) for v in self._unknown(within, now))])
 
+    def _time_points(self, first: int, last: int) -> Iterable[int]:
+        """Return the time-points from *first* up to and including *last*."""
+        if self._time_model is TimeModel.HOLD:
+            return range(first, last + 1)
+        return [time for time, _ in self._trace if first <= time <= last]
+
     def _last(self, within: Interval, now: int) -> int:
         return self._end if within.end is None else min(self._end, now + within.end)
 
     def _unknown(self, within: Interval, now: int) -> list[Verdict]:
-        """Return `UNDECIDED` if instants of the interval have not come yet."""
+        """Return `UNDECIDED` if a part of the interval has not come yet."""
         known = within.end is not None and now + within.end <= self._end
         return [] if known else [Verdict.UNDECIDED]

@@ -7,7 +7,7 @@ domains. The place of a node in its text takes no part in comparison.
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass, field
-from enum import IntEnum
+from enum import IntEnum, StrEnum
 
 from dyknow.source_text import MADE_IN_PYTHON, Span
 from dyknow.time import Duration
@@ -38,6 +38,7 @@ __all__ = [
     "Number",
     "Term",
     "Text",
+    "TimeModel",
     "Truth",
     "Until",
     "Verdict",
@@ -52,6 +53,16 @@ class Verdict(IntEnum):
     FALSE = -1
     UNDECIDED = 0
     TRUE = 1
+
+
+class TimeModel(StrEnum):
+    """At which time-points there is a state (`dyknow.mtl.semantics`)."""
+
+    HOLD = "hold"
+    """Each state holds until the next one, at every nanosecond."""
+
+    POINTS = "points"
+    """Only the time-points of the states count; between them there is nothing."""
 
 
 @dataclass(frozen=True)
