@@ -132,18 +132,16 @@ class CachedStream:
 
     def reset(self) -> None:
         """Forget all samples."""
-        while self._cache:
-            self._lose(self._cache.popleft())
+        lost = [sample.valid_time for sample in self._cache]
+        self.lost_until = max([self.lost_until, *lost])
+        self._cache.clear()
 
     def hold(self, sample: Sample[Any]) -> None:
         """Hold the next sample, in place of the oldest if there is no room."""
         cache = self._cache
         if len(cache) == cache.maxlen:
-            self._lose(cache[0])
+            self.lost_until = max(self.lost_until, cache[0].valid_time)
         cache.append(sample)
-
-    def _lose(self, sample: Sample[Any]) -> None:
-        self.lost_until = max(self.lost_until, sample.valid_time)
 
 
 def _checked(capacity: int) -> int:

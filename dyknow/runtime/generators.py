@@ -43,6 +43,7 @@ class StreamGenerator(CachedStream):
             promises no more samples; `NEVER` without one.
         last: The last sample that has become available.
         heartbeats: How many heartbeats have become available.
+        is_waiting: Whether there are samples that are not available yet.
     """
 
     __slots__ = (
@@ -58,6 +59,7 @@ class StreamGenerator(CachedStream):
         "depth",
         "first",
         "heartbeats",
+        "is_waiting",
         "last",
         "output_policy",
     )
@@ -76,6 +78,7 @@ class StreamGenerator(CachedStream):
         self.account = Account()
         self.delays = Delays()
         self.heartbeats = 0
+        self.is_waiting = False
         self.first: TimePoint | None = None
         self.last: Sample[Any] | None = None
         self._agenda = agenda
@@ -87,9 +90,9 @@ class StreamGenerator(CachedStream):
         self._waiting: deque[Element] = deque()
 
     @property
-    def next_release(self) -> TimePoint | None:
-        """When the next sample that is not available yet will be."""
-        return self._waiting[0].available_time if self._waiting else None
+    def next_release(self) -> TimePoint:
+        """When the next of the samples that are waiting will be available."""
+        return self._waiting[0].available_time
 
     @property
     def is_fresh(self) -> bool:
@@ -149,14 +152,15 @@ class StreamGenerator(CachedStream):
         if isinstance(element, Heartbeat):
             self._put_heartbeat(element, now)
             return
-        wanted = element.available_time
+        time = element.available_time
         earliest = now if now > self._last_time else TimePoint(self._last_time + 1)
-        if wanted < earliest:
+        if time < earliest:
             element = Sample(element.value, element.valid_time, earliest)
-            self._agenda.extend(max(wanted, now), earliest)
-        self._last_time = element.available_time
+            self._agenda.extend(max(time, now), earliest)
+            time = earliest
+        self._last_time = time
         self.account.samples += 1
-        if element.available_time <= now:
+        if time <= now:
             self._hand_out(element)
         else:
             self._wait_with(element)
@@ -170,11 +174,13 @@ class StreamGenerator(CachedStream):
                 self._beat(element)
             else:
                 self._hand_out(element)
+        self.is_waiting = bool(self._waiting)
 
     def clear(self) -> None:
         """Forget the samples that are not available yet."""
         self._agenda.pending -= len(self._waiting)
         self._waiting.clear()
+        self.is_waiting = False
 
     def _put_heartbeat(self, heartbeat: Heartbeat, now: TimePoint) -> None:
         earliest = max(now, self._last_time)
@@ -187,6 +193,7 @@ class StreamGenerator(CachedStream):
             self._wait_with(heartbeat)
 
     def _wait_with(self, element: Element) -> None:
+        self.is_waiting = True
         self._waiting.append(element)
         self._agenda.pending += 1
 

@@ -6,7 +6,6 @@ from enum import Enum
 from typing import Any
 
 from dyknow.errors import ProcessError
-from dyknow.runtime.accounts import Account
 from dyknow.runtime.agenda import Agenda
 from dyknow.runtime.failures import Failure, OnFailure
 from dyknow.runtime.generators import Beat, Label, Receive, StreamGenerator
@@ -56,6 +55,7 @@ class RunningProcess:
         on_failure: What is done when it fails.
         failure: Its failure, if it has failed.
         has_ended: Whether it will produce nothing more.
+        account: What it has cost and given.
     """
 
     kind: Kind
@@ -72,6 +72,7 @@ class RunningProcess:
         self.on_failure = on_failure
         self.failure: Failure | None = None
         self.has_ended = False
+        self.account = generator.account
         self._agenda = surroundings.agenda
         self._meter = surroundings.meter
         self._report = surroundings.report
@@ -92,11 +93,6 @@ class RunningProcess:
     def output_policy(self) -> Policy:
         """What the process promises about all that it produces."""
         return self.generator.output_policy
-
-    @property
-    def account(self) -> Account:
-        """What the process has cost and given."""
-        return self.generator.account
 
     @property
     def inputs(self) -> Sequence[tuple[Label, Sample[Any]]]:
@@ -132,9 +128,8 @@ class RunningProcess:
         self.generator.put(Heartbeat(END_OF_TIME, now), now)
 
     def _plan_release(self) -> None:
-        release = self.generator.next_release
-        if release is not None:
-            self._agenda.wake(self._ticket, release)
+        if self.generator.is_waiting:
+            self._agenda.wake(self._ticket, self.generator.next_release)
 
 
 class RunningSource(RunningProcess):
@@ -287,8 +282,9 @@ class RunningUnit(RunningProcess):
 
         def receive(sample: Sample[Any]) -> None:
             self._inputs[at] = sample
-            self._has_news = True
-            self._agenda.wake(self._ticket, sample.available_time)
+            if not self._has_news:
+                self._has_news = True
+                self._agenda.wake(self._ticket, sample.available_time)
 
         return receive
 
@@ -305,10 +301,12 @@ class RunningUnit(RunningProcess):
 
     def turn(self, now: TimePoint) -> None:
         """Hand out what is due, call the unit, and plan the next turn."""
-        self.generator.release(now)
+        generator = self.generator
+        if generator.is_waiting:
+            generator.release(now)
         if not self.has_ended:
             for element in self._call(now):
-                self.generator.put(element, now)
+                generator.put(element, now)
             if self._reporter is not None:
                 for violation in self._reporter.take_violations():
                     self._publish(self.label, violation)
@@ -330,20 +328,22 @@ class RunningUnit(RunningProcess):
         return produced
 
     def _tell(self, now: TimePoint) -> list[Element]:
-        unit, produced = self._unit, list[Element]()
+        unit = self._unit
+        produced: list[Element] = []
         if self._has_news:
             self._has_news = False
             self.account.calls += 1
-            produced.extend(unit.push(now, tuple(self._inputs)))
+            produced += unit.push(now, tuple(self._inputs))
         if self._heartbeats:
-            produced.extend(self._pass_heartbeats(now))
-        self._due = unit.due()
-        if self._due is not None and self._due <= now:
+            produced += self._pass_heartbeats(now)
+        due = unit.due()
+        if due is not None and due <= now:
             self.account.calls += 1
-            produced.extend(unit.advance(now))
-            self._due = unit.due()
-            if self._due is not None and self._due <= now:
+            produced += unit.advance(now)
+            due = unit.due()
+            if due is not None and due <= now:
                 raise ValueError("after 'advance' the unit is still due at the same time")
+        self._due = due
         return produced
 
     def _pass_heartbeats(self, now: TimePoint) -> Iterator[Element]:
