@@ -19,11 +19,10 @@ from dyknow.judging.judgement import Basis, Breach, Definition, Draft, Finding, 
 from dyknow.judging.published import PublishedViolations, ViolatedStream
 from dyknow.judging.recomputing import Recomputation, unknown_behind
 from dyknow.judging.streams import KnownStreams
-from dyknow.judging.terms import TermBreaches, policy_breaches
+from dyknow.judging.terms import TermBreaches, may_vary, policy_breaches
 from dyknow.judging.wellformed import heartbeat_breaches, order_breaches, sort_breaches
 from dyknow.runtime.generators import Label
 from dyknow.runtime.subscriptions import StreamViolation
-from dyknow.streams.policy import Policy, SampleEvery
 from dyknow.streams.sample import Sample
 
 __all__ = ["KEPT", "judge"]
@@ -195,7 +194,7 @@ class _Judge:
             return
         draft.basis = Basis.RECORDED
         recorded, provider = self._streams[stream.topic], self._streams[stream.provider]
-        if _may_vary(stream.policy) and not _are_alike(recorded, adapted):
+        if may_vary(stream.policy) and not _are_alike(recorded, adapted):
             self._published.leave_open(_violated(stream))
         published = self._published.of(_violated(stream))
         term = TermBreaches(stream, recorded, provider, adapted, self._until)
@@ -225,11 +224,6 @@ class _Answer:
         self.tally = Tally(keep)
         self.basis = Basis.NOTHING
         self.violations: Sequence[StreamViolation] = ()
-
-
-def _may_vary(policy: Policy) -> bool:
-    """Return whether a stream may have had another period for a while, because of the load."""
-    return isinstance(policy.change, SampleEvery) and policy.change.longest is not None
 
 
 def _are_alike(one: Sequence[Sample[Any]], other: Sequence[Sample[Any]]) -> bool:

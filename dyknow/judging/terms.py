@@ -4,7 +4,8 @@ What is allowed stands in `dyknow.streams.conformance` and what that rests on: d
 4.5.11 of Heintz (2009), which leave open which of several streams is made. Here each sample is
 traced to the one it comes from, so that a breach is told by what is wrong with the sample, and
 what is wrong with one does not hide what is wrong with others. Beyond the definitions, a stream
-is in time: adapters hand on what a policy lets through as soon as that is certain.
+is in time: adapters hand on what a policy lets through as soon as that is certain, and not
+before.
 """
 
 from bisect import bisect_right
@@ -18,14 +19,19 @@ from dyknow.judging.wording import deviation, short, times
 from dyknow.streams.approximation import extend
 from dyknow.streams.conformance import violations
 from dyknow.streams.maximality import omissions
-from dyknow.streams.policy import Approximation, Constraint, Violation
+from dyknow.streams.policy import Approximation, Constraint, Policy, SampleEvery, Violation
 from dyknow.streams.sample import Sample
 from dyknow.streams.values import are_equal
 from dyknow.time import TimePoint
 
-__all__ = ["TermBreaches", "policy_breaches"]
+__all__ = ["TermBreaches", "may_vary", "policy_breaches"]
 
 Samples = Sequence[Sample[Any]]
+
+
+def may_vary(policy: Policy) -> bool:
+    """Return whether a stream may have had another period for a while, because of the load."""
+    return isinstance(policy.change, SampleEvery) and policy.change.longest is not None
 
 
 class TermBreaches:
@@ -68,13 +74,13 @@ class TermBreaches:
         return sorted(found, key=lambda breach: breach.available_time or 0)
 
     def _origin(self, sample: Sample[Any]) -> Iterator[Breach]:
-        """Yield a breach if *sample* has no origin of its own, or was held back."""
+        """Yield a breach if *sample* has no origin of its own, or came out of time."""
         candidates = self._by_valid_time.get(sample.valid_time, [])
         same = [each for each in candidates if are_equal(each.value, sample.value)]
         unused = [each for each in same if id(each) not in self._used]
         in_time = [each for each in unused if each.available_time <= sample.available_time]
         if in_time:
-            yield from self._held_back(self._use(in_time[-1], sample), sample)
+            yield from self._out_of_time(self._use(in_time[-1], sample), sample)
         elif unused:
             expected, found = deviation(self._use(unused[0], sample), sample)
             yield self._at(sample, Definition.SUBSTREAM, f"{expected} at the earliest", found)
@@ -87,11 +93,12 @@ class TermBreaches:
         self._used[id(origin)] = sample.available_time
         return origin
 
-    def _held_back(self, origin: Sample[Any], sample: Sample[Any]) -> Iterator[Breach]:
+    def _out_of_time(self, origin: Sample[Any], sample: Sample[Any]) -> Iterator[Breach]:
         prompt = origin
         if self._policy.period is not None:
             prompt = self._adapted.get(sample.valid_time, sample)
-        if sample.available_time > prompt.available_time:
+        is_hasty = sample.available_time < prompt.available_time and not may_vary(self._policy)
+        if sample.available_time > prompt.available_time or is_hasty:
             expected, found = deviation(prompt, sample)
             yield self._at(sample, Definition.TERM, expected, found)
 

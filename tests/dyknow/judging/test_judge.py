@@ -8,6 +8,7 @@ from hypothesis import strategies as st
 
 from dyknow.judging.judge import judge
 from dyknow.judging.judgement import Basis
+from dyknow.judging.terms import may_vary
 from dyknow.streams.merging import Merge
 from dyknow.streams.policy import Policy, SampleEvery
 from dyknow.streams.sample import Heartbeat, Sample
@@ -76,12 +77,18 @@ def test_what_the_kernel_does_is_correct(network: SmallNetwork, end: int) -> Non
 def test_whatever_happens_to_a_stream_is_found(
     network: SmallNetwork, mutation: Mutation, data: st.DataObject
 ) -> None:
-    """A stream of a unit, an adapted stream, or an output that was altered is named."""
+    """A stream of a unit, an adapted stream, or an output that was altered is named.
+
+    Of a stream whose period may be longer under load, samples may be missing.
+    """
     execution = network.run(ms(300))
+    declared = network.declared()
+    inputs = [each for process in declared.processes.values() for each in process.inputs]
+    lenient = {each.topic for each in (*inputs, *declared.outputs) if may_vary(each.policy)}
     samples = {
         topic: [each for each in elements if isinstance(each, Sample)]
         for topic, elements in execution.streams.items()
-        if topic not in network.sources
+        if topic not in network.sources and topic not in lenient
     }
     topic = data.draw(st.sampled_from(sorted(samples)))
     place = data.draw(st.integers(0, max(0, len(samples[topic]) - 1)))
@@ -89,7 +96,7 @@ def test_whatever_happens_to_a_stream_is_found(
     assume(not same_streams(altered, samples[topic]))
     spoilt = replace(execution, streams={**execution.streams, topic: altered})
 
-    judgement = judge(network.declared(), spoilt)
+    judgement = judge(declared, spoilt)
 
     assert topic in {breach.stream for breach in judgement.breaches}
 
