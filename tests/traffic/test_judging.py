@@ -24,7 +24,7 @@ from tests.support.mutations import MUTATIONS, Mutation, delay, disorder, drop
 from tests.support.rewriting import Alter, rewrite
 from traffic.__main__ import app
 from traffic.errors import RequestError
-from traffic.judging import judge_recording
+from traffic.judging import document_from, judge_recording
 from traffic.recording.codecs import CODECS
 from traffic.request import RunRequest
 from traffic.running import run_scenario
@@ -129,14 +129,19 @@ def test_one_wrong_number_is_named(recording: Path, tmp_path: Path) -> None:
     """Of one number of one car it is said what it should be; no other process is blamed."""
     altered = rewrite(recording, tmp_path / "x.mcap", {"cars": faster}, codecs=CODECS)
 
-    judgement = judge_recording(altered).judgement
+    judged = judge_recording(altered)
 
+    judgement = judged.judgement
     breach = next(each for each in judgement.breaches if each.stream == "cars")
     assert breach.definition == "4.5.8"
     assert breach.expected.startswith("speed[car")
     assert breach.valid_time == TimePoint(2_000_000_000)
     blamed = {each.stream for each in judgement.breaches}
     assert blamed == {"cars", "moving_cars/1", "car_pairs/1", "output/cars"}
+    document = document_from(judged)
+    (plain,) = next(each for each in document["findings"] if each["stream"] == "cars")["breaches"]
+    assert plain["valid_time"] == 2000.0
+    assert plain["expected"] == breach.expected
 
 
 def test_a_stream_in_the_place_of_another_is_found(recording: Path, tmp_path: Path) -> None:
