@@ -31,7 +31,8 @@ from dyknow.kpl.syntax import (
 )
 from dyknow.runtime import generators
 from dyknow.runtime.failures import OnFailure
-from dyknow.runtime.kernel import OUTPUT, Kernel
+from dyknow.runtime.kernel import Kernel
+from dyknow.runtime.subscriptions import StreamProxy
 from dyknow.streams.policy import Policy
 from dyknow.streams.process import ComputationalUnit, Source
 from dyknow.streams.viewing import View
@@ -124,25 +125,32 @@ class Assembly:
         Raises:
             LabelInUseError: Somebody has subscribed to it without the knowledge of the network.
         """
-        part = self.parts[name]
-        if part.n_users or (part.is_kept and not anyway):
-            return []
-        self.kernel.remove(part.label)
-        del self.parts[name]
-        self.journal.removed.append(part.label)
-        gone = [part]
-        for stream in part.inputs:
-            gone.extend(self.release(name_of(stream)))
+        gone: list[Part] = []
+        ahead = [self.parts[name]]
+        while ahead:
+            part = ahead.pop()
+            if part.n_users or (part.is_kept and not (anyway and part.label == name)):
+                continue
+            self.kernel.remove(part.label)
+            del self.parts[part.label]
+            self.journal.removed.append(part.label)
+            gone.append(part)
+            for stream in part.inputs:
+                provider = self.parts[name_of(stream)]
+                provider.n_users -= 1
+                if not provider.n_users:
+                    ahead.append(provider)
         return gone
 
     def users_of(
-        self, names: Collection[str], staying: Iterable[StreamTerm]
+        self, names: Collection[str], staying: Iterable[StreamTerm], own: Collection[StreamProxy]
     ) -> dict[str, list[str]]:
         """Return by whom some parts are used, if all but them and what they alone use goes on.
 
         Args:
             names: The labels of the parts.
             staying: Outputs and streams of sets that go on, whoever provides them.
+            own: The streams that the network has subscribed to itself.
         """
         ahead = [name for name, part in self.parts.items() if part.is_kept and name not in names]
         ahead.extend(map(name_of, staying))
@@ -157,7 +165,7 @@ class Assembly:
                     seen.add(below)
                     ahead.append(below)
         for proxy in self.kernel.streams:
-            if proxy.provider in names and proxy.number == 0 and proxy.receiver == OUTPUT:
+            if proxy.provider in names and proxy.number == 0 and proxy not in own:
                 found.setdefault(proxy.provider, []).append(proxy.receiver)
         return found
 

@@ -1,16 +1,16 @@
 """What changes in a network by itself: configuration blocks and mediations at work.
 
-Both follow a stream of sets. When a new set has arrived the network is changed at the end of the
-instant: first leaves what belongs to members that have left, then what belongs to new members is
-built, then mediations take the streams of the members they have now. A member whose processes
-need a label that does not exist waits until it does.
+Both follow a stream of sets, and begin with the newest set there is. When a new one has come,
+the network is changed at the end of the instant: first leaves what belongs to members that have
+left, then what belongs to new members is built, then mediations take the streams of the members
+they have now. A member whose processes need a label that does not exist waits until it does.
 """
 
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, field
 from typing import Any
 
-from dyknow.errors import PolicyNotSupportedError, ProcessError
+from dyknow.errors import LabelAlreadyExistsError, PolicyNotSupportedError, ProcessError
 from dyknow.kpl.assembly import Assembly, Part, name_of, policy_of
 from dyknow.kpl.members import Mediator, label_from, members_in, objects_in
 from dyknow.kpl.names import OUTSIDE, labels_of
@@ -112,6 +112,7 @@ class Configurations:
         self._blocks: list[_Block] = []
         self._mediations: dict[str, _Mediation] = {}
         self._is_asked = False
+        self._is_settling = False
 
     @property
     def waiting(self) -> dict[str, list[str]]:
@@ -128,6 +129,11 @@ class Configurations:
                     key = f"{mediation.part.label} for {name}"
                     found[key] = self._assembly.missing([stream])
         return found
+
+    @property
+    def proxies(self) -> set[StreamProxy]:
+        """The streams of sets of all blocks."""
+        return {block.proxy for block in self._blocks if block.proxy is not None}
 
     def enter(self, declaration: Configuration) -> None:
         """Let a block work whose stream of sets has been built."""
@@ -168,6 +174,9 @@ class Configurations:
                 mediation = _Mediation(part, part.process)
                 self._mediations[part.label] = mediation
                 part.unit.on_members = self._told(mediation)
+                newest = self._newest(part.process.members)
+                if newest is not None:
+                    part.unit.on_members(newest.value)
 
     def gone(self, parts: Iterable[Part]) -> None:
         """Take note of parts that have been taken out: mediations let go of what they took."""
@@ -183,19 +192,35 @@ class Configurations:
             self._kernel.change(self.settle)
 
     def settle(self) -> None:
-        """Make the network fit the newest sets and the labels that there are."""
-        self._is_asked = False
-        leaving = [member for block in self._blocks for member in self._take_newest(block)]
+        """Make the network fit the newest sets and the labels that there are.
+
+        What is built for it may begin with a set of its own, so that there is more to do.
+        """
+        self._is_asked = True
+        if self._is_settling:
+            return
+        self._is_settling = True
+        try:
+            while self._is_asked:
+                self._is_asked = False
+                self._settle_once()
+        finally:
+            self._is_settling = False
+        self._on_settled()
+
+    def _settle_once(self) -> None:
+        leaving = [member for block in self._blocks for member in _leaving(block)]
         self._forget(leaving)
         self.drop()
         for member in leaving:
             self._take_out(member)
+        for block in self._blocks:
+            self._let_join(block)
         for block in self._blocks:  # which grows meanwhile by the blocks inside new members
             for member in block.members.values():
                 self._build(member)
         for mediation in list(self._mediations.values()):
             self._merge(mediation)
-        self._on_settled()
 
     def _block(self, declaration: Configuration) -> _Block:
         return next(each for each in self._blocks if each.declaration is declaration)
@@ -218,17 +243,28 @@ class Configurations:
     def _enter(self, block: _Block) -> None:
         term = block.declaration.members
         label = self._assembly.hold(term)
-        name = GeneratorLabel(f"for each {block.declaration.member.text} in {text_from(term)}")
+        name = GeneratorLabel(_name_of(block))
 
         def receive(sample: Sample[Any]) -> None:
             try:
-                block.newest = objects_in(sample.value)
+                newest = objects_in(sample.value)
             except ValueError as fault:
-                raise ProcessError(name, sample.available_time) from fault
-            self.ask()
+                raise ProcessError(name, sample.available_time, str(fault)) from fault
+            if block.newest is not None or newest != tuple(block.members):
+                block.newest = newest
+                self.ask()
 
         self._blocks.append(block)
         block.proxy = self._kernel.subscribe(label, receive, policy_of(term), name)
+        newest = self._newest(term)
+        if newest is not None:
+            receive(newest)
+
+    def _newest(self, term: StreamTerm) -> Sample[Any] | None:
+        """Return the newest set that has come before anybody asked."""
+        last = self._kernel.generator(GeneratorLabel(name_of(term))).last
+        is_wanted = last is not None and policy_of(term).covers(last.valid_time)
+        return last if is_wanted else None
 
     def _leave(self, block: _Block) -> None:
         for member in block.members.values():
@@ -239,21 +275,23 @@ class Configurations:
             block.proxy.end()
             self.gone(self._assembly.release(name_of(block.declaration.members)))
 
-    def _take_newest(self, block: _Block) -> list[_Member]:
-        """Adopt the newest set of a block; return the members that have left."""
+    def _let_join(self, block: _Block) -> None:
+        """Adopt the newest set of a block, if there is one."""
         newest, block.newest = block.newest, None
-        if newest is None:
-            return []
-        old = block.members
-        block.members = {}
-        for name in newest:
-            block.members[name] = old.pop(name) if name in old else self._new(block, name)
-        return list(old.values())
+        if newest is not None:
+            old = block.members
+            block.members = {name: old.get(name) or self._new(block, name) for name in newest}
 
     def _new(self, block: _Block, name: str) -> _Member:
         member = self._bound(block, name)
-        for each in member.generators:
-            self._assembly.known[each.label.text] = each
+        labels = [each.label.text for each in member.generators]
+        names = [each.name.text for each in member.outputs]
+        taken = [label for label in labels if label in self._assembly.known]
+        taken += [name for name in names if name in self._outputs]
+        if taken:
+            fault = LabelAlreadyExistsError(taken[0])
+            raise ProcessError(_name_of(block), self._kernel.now, str(fault)) from fault
+        self._assembly.known.update(zip(labels, member.generators, strict=True))
         return member
 
     def _bound(self, block: _Block, name: str) -> _Member:
@@ -277,8 +315,9 @@ class Configurations:
     def drop(self) -> None:
         """Let mediations take no more streams of members that have left, or of lost labels."""
         for mediation in list(self._mediations.values()):
+            staying = set(mediation.newest)
             for name, merged in list(mediation.merged.items()):
-                if name not in mediation.newest or self._is_lost(merged.stream):
+                if name not in staying or self._is_lost(merged.stream):
                     del mediation.merged[name]
                     self._kernel.remove_input(merged.proxy)
                     self.gone(self._assembly.release(name_of(merged.stream)))
@@ -311,22 +350,27 @@ class Configurations:
         """Let a mediation take the streams of the members that it does not take yet."""
         label = mediation.part.label
         for name in mediation.newest:
+            if name in mediation.merged:
+                continue
             stream = _stream_for(mediation.declaration, name)
-            if name in mediation.merged or self._assembly.missing([stream]):
+            if self._assembly.missing([stream]):
                 continue
             self.built(self._assembly.build([stream]))
             provider = self._assembly.hold(stream)
             try:
                 proxy = self._kernel.add_input(label, provider, policy_of(stream))
             except (PolicyNotSupportedError, ValueError) as fault:
-                raise ProcessError(label, self._kernel.now) from fault
+                raise ProcessError(label, self._kernel.now, str(fault)) from fault
             mediation.merged[name] = _Merged(stream, proxy)
 
     def _told(self, mediation: _Mediation) -> Any:
         def told(value: Any) -> None:
             newest = members_in(value)
+            if newest == mediation.newest:
+                return
             for name in newest:
-                _stream_for(mediation.declaration, name)  # to find out what is wrong with it
+                if name not in mediation.merged:
+                    _stream_for(mediation.declaration, name)  # to find out what is wrong with it
             mediation.newest = newest
             self.ask()
 
@@ -347,6 +391,18 @@ def _stream_for(mediation: Mediation, name: str) -> StreamTerm:
     if any(label.text == member for label in labels):
         stream = bind_label(stream, member, label_from(name))
     return stream
+
+
+def _leaving(block: _Block) -> list[_Member]:
+    """Return the members that are not in the newest set, and are members no more."""
+    if block.newest is None:
+        return []
+    staying = set(block.newest)
+    return [block.members.pop(name) for name in list(block.members) if name not in staying]
+
+
+def _name_of(block: _Block) -> str:
+    return f"for each {block.declaration.member.text} in {text_from(block.declaration.members)}"
 
 
 def _text_of(block: _Block, member: _Member) -> str:

@@ -16,9 +16,12 @@ __all__ = ["cycles"]
 def cycles(declared: Declarations) -> Iterator[CircularDefinitionError]:
     """Yield one fault for each place where following the inputs leads back."""
     done: set[int] = set()
+    told: set[str] = set()
     for start in declared.placed:
-        if id(start.declaration) not in done:
-            yield from _from(start, done, declared)
+        for fault in () if id(start.declaration) in done else _from(start, done, declared):
+            if fault.message not in told:
+                told.add(fault.message)
+                yield fault
 
 
 def _from(

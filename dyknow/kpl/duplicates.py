@@ -1,13 +1,15 @@
 """Names that are declared more than once.
 
 Sources and computational units share one set of names; labels, streams and parameters have each
-their own. Two labels are the same if they can be the same for some members of sets.
+their own. Two labels with members of sets in them are the same if they are so for every member;
+whether some members make them the same is known only when the network runs.
 """
 
 from collections.abc import Iterator
 
 from dyknow.errors import DuplicateNameError, SpecificationError
-from dyknow.kpl.names import Declarations, Scope, may_be_one
+from dyknow.kpl.names import Declarations, Scope
+from dyknow.kpl.printer import text_from
 from dyknow.kpl.syntax import (
     Configuration,
     Declaration,
@@ -27,13 +29,15 @@ __all__ = ["duplicates", "unfit_member"]
 def duplicates(declared: Declarations) -> Iterator[SpecificationError]:
     """Yield a fault for each declaration of a name that is taken."""
     symbols: dict[tuple[str, str], Span] = {}
-    labels: dict[tuple[str, str, int], list[tuple[Label, Scope]]] = {}
+    labels: dict[tuple[str, str], Label] = {}
     for declaration, scope in declared.scoped():
         match declaration:
             case GeneratorDeclaration(label) | StreamDeclaration(label):
-                kind = _kind(declaration)
-                key = kind, label.feature.text, len(label.objects)
-                yield from _labels(kind, label, scope, labels.setdefault(key, []))
+                key = _kind(declaration), _text_in(label, scope)
+                if key in labels:
+                    first = labels[key].span
+                    yield DuplicateNameError(key[0], label.text, label.span, first)
+                labels.setdefault(key, label)
             case Configuration():
                 yield from unfit_member(declaration, scope, declared)
             case _:
@@ -58,14 +62,11 @@ def unfit_member(
         yield DuplicateNameError("parameter", member.text, member.span, first)
 
 
-def _labels(
-    kind: str, label: Label, scope: Scope, before: list[tuple[Label, Scope]]
-) -> Iterator[SpecificationError]:
-    for other, place in before:
-        if may_be_one(label, scope.members, other, place.members):
-            yield DuplicateNameError(kind, label.text, label.span, other.span)
-            break
-    before.append((label, scope))
+def _text_in(label: Label, scope: Scope) -> str:
+    """Return a label with the set of which a member is in the place of its name."""
+    sets = {block.member.text: f"each {text_from(block.members)}" for block in scope.blocks}
+    objects = ", ".join(sets.get(each.text, each.text) for each in label.objects)
+    return f"{label.feature.text}[{objects}]"
 
 
 def _kind(declaration: Declaration) -> str:

@@ -3,7 +3,7 @@
 from collections.abc import Callable, Collection, Iterable, Mapping
 from dataclasses import replace
 
-from dyknow.errors import LabelInUseError, UnknownNameError
+from dyknow.errors import LabelAlreadyExistsError, LabelInUseError, UnknownNameError
 from dyknow.kpl.assembly import Assembly, Part
 from dyknow.kpl.check import check, raise_faults
 from dyknow.kpl.configuration import Configurations
@@ -114,6 +114,7 @@ class Network:
         Raises:
             SpecificationErrors: Every fault of the specification that comes of it, or that shows
                 when things are built; the network is as it was.
+            LabelAlreadyExistsError: A label or an output belongs to a member of a set already.
         """
         if isinstance(added, str):
             added = parse_specification(added, name)
@@ -180,7 +181,8 @@ class Network:
         outputs = {each: self._outputs[each].stream for each in self._outputs}
         staying = [stream for name, stream in outputs.items() if name not in closing]
         staying += [block.members for block in self._blocks.values() if block not in blocks]
-        for label, users in self._assembly.users_of(labels, staying).items():
+        own = self._outputs.proxies | self._configurations.proxies
+        for label, users in self._assembly.users_of(labels, staying, own).items():
             raise LabelInUseError(label, users)
 
     def _build(self, declared: Declarations, wanted: set[str]) -> None:
@@ -200,8 +202,12 @@ class Network:
         new_outputs = [
             each
             for each in declared.streams.values()
-            if each.name.text in wanted and each.name.text not in self._outputs
+            if each.name.text in wanted and each.name.text not in self._wanted
         ]
+        taken = [each for each in declared.generators if self._is_of_member(each)]
+        taken += [each.name.text for each in new_outputs if each.name.text in self._outputs]
+        if taken:
+            raise LabelAlreadyExistsError(taken[0])
         old = self._assembly.known, self._assembly.lasting
         self._assembly.known = {**self._assembly.known, **declared.generators}
         self._assembly.lasting = {*self._assembly.lasting, *declared.generators}
@@ -213,6 +219,9 @@ class Network:
             self._assembly.known, self._assembly.lasting = old
             raise
         self._adopt(parts, new_outputs, new_blocks, wanted)
+
+    def _is_of_member(self, label: str) -> bool:
+        return label in self._assembly.known and label not in self._assembly.lasting
 
     def _adopt(
         self,

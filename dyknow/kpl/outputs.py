@@ -42,6 +42,11 @@ class Outputs:
     def __contains__(self, name: str) -> bool:
         return name in self._outputs
 
+    @property
+    def proxies(self) -> set[StreamProxy]:
+        """The ends of all who have subscribed."""
+        return {proxy for output in self._outputs.values() for proxy in output.proxies}
+
     def open(self, declaration: StreamDeclaration) -> None:
         """Let there be an output whose provider has been built."""
         self._assembly.hold(declaration.stream)

@@ -5,7 +5,7 @@ never a name, or with `for each` at the beginning of a line; strings and comment
 """
 
 import re
-from bisect import bisect_left, bisect_right
+from bisect import bisect_left
 from collections.abc import Iterator
 
 __all__ = ["MAX_DEPTH", "Outline"]
@@ -66,7 +66,7 @@ class Outline:
 
     def names_declared(self, start: int, end: int) -> Iterator[str]:
         """Yield the names that the declarations around a stretch of the text seem to declare."""
-        first = max(0, bisect_right(self._starts, start) - 1)
+        first = max(0, bisect_left(self._starts, start) - 1)
         for at in self._starts[first : bisect_left(self._starts, end)]:
             declared = _DECLARED.match(self._text, at)
             if declared is not None:

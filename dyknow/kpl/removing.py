@@ -3,7 +3,7 @@
 from collections.abc import Collection, Iterator, Sequence
 
 from dyknow.errors import LabelInUseError, ServiceError
-from dyknow.kpl.names import Declarations, Scope, descendants, labels_of
+from dyknow.kpl.names import Declarations, Placed, Scope, descendants, labels_of
 from dyknow.kpl.printer import text_from
 from dyknow.kpl.syntax import (
     Configuration,
@@ -41,11 +41,13 @@ def forbid_use(
 ) -> None:
     """Raise an error if other declarations need those at the places *chosen*.
 
-    What a mediation merges, or a member of a set may need, is not needed by the declaration.
+    What a mediation merges, or a member of a set may need, is needed by the declaration only if
+    nothing else is left that it could be.
 
     Raises:
         LabelInUseError: They do; it names them.
     """
+    declared = Declarations(bound)
     removed = {id(bound.declarations[at]): at for at in chosen}
     parameters = {
         each.name.text: at
@@ -58,7 +60,7 @@ def forbid_use(
     ):
         if at in chosen:
             continue
-        needed = {removed[key] for key in _needs(declaration, Declarations(bound)) & set(removed)}
+        needed = {removed[key] for key in _needs(declaration, declared, set(removed))}
         words = {node.text for node in descendants(written) if isinstance(node, Name)}
         needed |= {place for name, place in parameters.items() if name in words}
         for place in needed:
@@ -103,19 +105,22 @@ def _name(declaration: Declaration) -> str:
     return f"{kind} {name}" if isinstance(declaration, Configuration) else name
 
 
-def _needs(declaration: Declaration, declared: Declarations) -> set[int]:
-    """Return what a declaration needs, by identity; of a block, all that stands in it."""
+def _needs(declaration: Declaration, declared: Declarations, removed: set[int]) -> set[int]:
+    """Return what a declaration needs of *removed*; of a block, all that stands in it does."""
     found: set[int] = set()
     for each, scope in declared.scoped():
         if each is declaration or any(block is declaration for block in scope.blocks):
-            found.update(_needs_of_one(each, scope, declared))
+            for alternatives in _needs_of_one(each, scope, declared):
+                if alternatives <= removed:
+                    found |= alternatives
     return found
 
 
-def _needs_of_one(each: Declaration, scope: Scope, declared: Declarations) -> Iterator[int]:
+def _needs_of_one(each: Declaration, scope: Scope, declared: Declarations) -> Iterator[set[int]]:
+    """Yield, for each name in a declaration, what it can mean: one of these is needed."""
     match each:
         case GeneratorDeclaration(_, process):
-            yield from map(id, _prototypes(process, declared))
+            yield from ({id(prototype)} for prototype in _prototypes(process, declared))
             yield from _needs_of_node(process, scope, declared)
         case StreamDeclaration(_, stream) | Configuration(_, stream):
             yield from _needs_of_node(stream.provider, scope, declared)
@@ -125,11 +130,14 @@ def _needs_of_one(each: Declaration, scope: Scope, declared: Declarations) -> It
 
 def _needs_of_node(
     node: Process | Provider, scope: Scope, declared: Declarations
-) -> Iterator[int]:
+) -> Iterator[set[int]]:
     for label, place in labels_of(node, scope):
-        if not any(each.text in place.members for each in (label.feature, *label.objects)):
-            for placed in declared.meaning(label, place).all:
-                yield id(placed.declaration)
+        if not place.is_merged(label):
+            yield {id(_outermost(placed)) for placed in declared.meaning(label, place).all}
+
+
+def _outermost(placed: Placed) -> Declaration:
+    return placed.scope.blocks[0] if placed.scope.blocks else placed.declaration
 
 
 def _prototypes(process: Process, declared: Declarations) -> Iterator[Declaration]:

@@ -2,7 +2,7 @@
 
 from collections.abc import Iterable
 
-from dyknow.kpl.names import Declarations, Placed, Scope
+from dyknow.kpl.names import Declarations, Placed, Scope, labels_of
 from dyknow.kpl.syntax import (
     ANY_SORT,
     OBJECT_SORT,
@@ -81,11 +81,35 @@ class Sorts:
         return _common([self._of_placed(each) for each in meaning.generators])
 
     def _of_placed(self, placed: Placed) -> Sort:
-        key = id(placed.declaration)
-        if key not in self._known:
-            self._known[key] = ANY  # for a generator that is defined in terms of itself
-            self._known[key] = self.of(placed.declaration.process, placed.scope)
-        return self._known[key]
+        """Return the sort of a generator, having found those of all that it is made from.
+
+        Not by recursion, since the way may be long.
+        """
+        ahead, begun = [placed], set[int]()
+        while ahead:
+            key = id(ahead[-1].declaration)
+            new = [] if key in self._known or key in begun else self._unknown_inputs(ahead[-1])
+            begun.add(key)
+            if new:
+                ahead.extend(new)
+                continue
+            last = ahead.pop()
+            if key not in self._known:
+                self._known[key] = ANY  # for a generator that is defined in terms of itself
+                self._known[key] = self.of(last.declaration.process, last.scope)
+        return self._known[id(placed.declaration)]
+
+    def _unknown_inputs(self, placed: Placed) -> list[Placed]:
+        process = placed.declaration.process
+        if isinstance(process, SourceInstance | UnitInstance | Link):
+            return []
+        return [
+            each
+            for label, scope in labels_of(process, placed.scope)
+            if not scope.is_merged(label)
+            for each in self._declared.meaning(label, scope).all
+            if id(each.declaration) not in self._known
+        ]
 
 
 def _common(sorts: Iterable[Sort]) -> Sort:

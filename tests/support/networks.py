@@ -1,73 +1,82 @@
-"""Small networks that are run by the kernel and remembered as a whole, for judging."""
+"""Networks of KPL texts, fed by given streams, for tests of what comes out of them."""
 
-from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field
+from collections.abc import Mapping
+from typing import Any
 
-from dyknow.judging.declared import DeclaredNetwork, DeclaredProcess, DeclaredStream
-from dyknow.judging.execution import Interpretation
-from dyknow.runtime.generators import Label
-from dyknow.runtime.kernel import Kernel
-from dyknow.runtime.subscriptions import StreamViolation
-from dyknow.streams.policy import Policy
-from dyknow.streams.process import ComputationalUnit, Element
+from dyknow.kpl.implementations import Implementations
+from dyknow.kpl.network import Network
+from dyknow.kpl.parser import parse_specification
+from dyknow.kpl.plan import build_network
+from dyknow.streams.process import Reactive
+from dyknow.streams.sample import NO_SAMPLE, Sample
 from dyknow.time import TimePoint
-from tests.support.streams import GivenSource
+from tests.support.streams import GivenSource, ms, text
 
-__all__ = ["SmallNetwork"]
-
-Term = tuple[str, Policy]
+__all__ = ["Collector", "Distance", "Echo", "network_of", "samples_at"]
 
 
-@dataclass
-class SmallNetwork:
-    """Sources with given samples, units, and outputs, in the order of their declaration.
+class Echo(Reactive):
+    """Says what its first input says."""
+
+    def push(self, now: TimePoint, inputs: tuple[Sample[Any], ...]) -> list[Sample[Any]]:
+        """Repeat the new sample."""
+        return [Sample(inputs[0].value, inputs[0].valid_time, now)]
+
+
+class Distance(Reactive):
+    """The difference between the values of two inputs, at each sample of the first."""
+
+    def push(self, now: TimePoint, inputs: tuple[Sample[Any], ...]) -> list[Sample[Any]]:
+        """Subtract the second from the first."""
+        one, other = inputs
+        if other is NO_SAMPLE or one.available_time != now:
+            return []
+        return [Sample(int(one.value) - int(other.value), one.valid_time, now)]
+
+
+class Collector:
+    """Collects the samples of all outputs, also of those that come while the network runs.
 
     Attributes:
-        sources: Label to samples and heartbeats.
-        units: Label to what makes the unit, and its inputs.
-        outputs: Name to the stream.
+        samples: By the name of the output.
+        changes: What was changed, with the instant in milliseconds.
     """
 
-    sources: Mapping[str, Sequence[Element]] = field(default_factory=dict)
-    units: Mapping[str, tuple[Callable[[], ComputationalUnit], Sequence[Term]]] = field(
-        default_factory=dict
-    )
-    outputs: Mapping[str, Term] = field(default_factory=dict)
+    def __init__(self, network: Network) -> None:
+        self.network = network
+        self.samples: dict[str, list[Sample[Any]]] = {}
+        self.changes: list[tuple[float, Any]] = []
+        for name in network.outputs:
+            self._subscribe(name)
+        network.subscribe_changes(self._note)
 
-    def declared(self) -> DeclaredNetwork:
-        """Return what is declared; the sources cannot be asked again."""
-        processes = {Label(label): DeclaredProcess(Label(label)) for label in self.sources}
-        for name, (make, terms) in self.units.items():
-            inputs = tuple(
-                DeclaredStream.input(Label(name), number, Label(provider), policy)
-                for number, (provider, policy) in enumerate(terms, start=1)
-            )
-            processes[Label(name)] = DeclaredProcess(Label(name), inputs, make_unit=make)
-        outputs = tuple(
-            DeclaredStream.output(name, Label(provider), policy)
-            for name, (provider, policy) in self.outputs.items()
-        )
-        return DeclaredNetwork(processes, outputs)
+    def run(self, until: TimePoint | None = None) -> dict[str, str]:
+        """Run the network; return what has come out of it so far, as text."""
+        self.network.kernel.run(until)
+        return {name: text(samples) for name, samples in self.samples.items()}
 
-    def run(self, until: TimePoint) -> Interpretation:
-        """Run the network and return all its streams."""
-        kernel, violations = Kernel(), list[StreamViolation]()
-        streams: dict[str, list[Element]] = {}
-        kernel.subscribe_violations(violations.append)
-        for name, elements in self.sources.items():
-            kernel.add_source(Label(name), GivenSource(elements))
-        for name, (make, terms) in self.units.items():
-            inputs = [(Label(provider), policy) for provider, policy in terms]
-            kernel.add_unit(Label(name), make(), inputs)
-        for label in kernel.labels:
-            kept = streams.setdefault(label, []).append
-            kernel.subscribe(label, kept, beat=kept)
-        for proxy in kernel.streams:
-            if proxy.number:
-                kept = streams.setdefault(f"{proxy.receiver}/{proxy.number}", []).append
-                proxy.tap(kept, kept)
-        for name, (provider, policy) in self.outputs.items():
-            kept = streams.setdefault(f"output/{name}", []).append
-            kernel.subscribe(Label(provider), kept, policy, beat=kept)
-        kernel.run(until)
-        return Interpretation(kernel.now, streams, violations)
+    def _note(self, change: Any) -> None:
+        self.changes.append((self.network.kernel.now / 1_000_000, change))
+        for name in change.opened:
+            self._subscribe(name)
+
+    def _subscribe(self, name: str) -> None:
+        self.network.subscribe(name, self.samples.setdefault(name, []).append)
+
+
+def network_of(
+    specification: str, sources: Mapping[str, str | list[Sample[Any]]], **options: Any
+) -> Network:
+    """Return a network whose sources say given streams; there are units `Echo` and `Distance`."""
+    made = {name: _maker(given) for name, given in sources.items()}
+    implementations = Implementations(made, {"Echo": Echo, "Distance": Distance})
+    return build_network(parse_specification(specification), implementations, **options)
+
+
+def samples_at(values: Mapping[float, Any]) -> list[Sample[Any]]:
+    """Return a stream of values by their times in milliseconds, available at once."""
+    return [Sample(value, ms(time), ms(time)) for time, value in values.items()]
+
+
+def _maker(given: str | list[Sample[Any]]) -> Any:
+    return lambda: GivenSource(given)
