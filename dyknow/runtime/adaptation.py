@@ -1,7 +1,8 @@
 """Streams on their way from a generator, plain or adapted to a policy.
 
 A stream may have several receivers: what is asked for alike at the same moment is the same
-stream, and is made once.
+stream, and is made once. Each sample is handed to all receivers of a stream, in the order in
+which they have joined it, before it is handed to those of the next stream of the generator.
 """
 
 from collections import deque
@@ -209,6 +210,7 @@ class AdaptedStream:
         """Hand everything from now on to *member* too."""
         is_first = not self._members
         self._members[member] = member.receive
+        self._beats.pop(member, None)
         if member.beat is not None:
             self._beats[member] = member.beat
         if is_first:

@@ -125,6 +125,7 @@ class StreamGenerator(CachedStream):
         What *key* was connected to before is replaced.
         """
         self._receivers[key] = receive
+        self._beats.pop(key, None)
         if beat is not None:
             self._beats[key] = beat
 

@@ -269,6 +269,7 @@ class Kernel:
         self._agenda.horizon = until
         try:
             self._start_processes()
+            self._subscriptions.settle()
             clock.start(self.now)
             while (instant := self._next_instant()) is not None:
                 clock.await_instant(instant)

@@ -120,12 +120,13 @@ class RunningProcess:
         failure = Failure(self.label, now, tuple(self.inputs), error)
         self.failure = failure
         self.account.failures += 1
-        self.has_ended = self.on_failure is OnFailure.END
         self._report(failure)
-        if not self.has_ended:
+        if self.on_failure is OnFailure.STOP:
             raise ProcessError(self.label, now, failure.text, failure.inputs) from error
+        self.has_ended = True
         # Nothing more will come, so that nobody needs to wait for it.
         self.generator.put(Heartbeat(END_OF_TIME, now), now)
+        self._plan_release()
 
     def _plan_release(self) -> None:
         if self.generator.is_waiting:
@@ -162,8 +163,8 @@ class RunningSource(RunningProcess):
         try:
             self._next = self._read()
         except Exception as error:  # noqa: BLE001, told to all and raised unless it may be survived
-            self._fail(error, now)
             self._end()
+            self._fail(error, now)
             return
         self.account.seconds += self._meter() - started
         self.account.calls += 1
@@ -198,7 +199,6 @@ class RunningSource(RunningProcess):
         self.has_ended = True
         self._next = None
         self._agenda.pending -= 1
-        self._plan_release()
 
     def _read(self) -> Element | None:
         if self._elements is None:

@@ -314,6 +314,10 @@ class Subscriptions:
             self._strike_out(proxy)
             self._changes.make(lambda: self._attach(proxy, None))
 
+    def settle(self) -> None:
+        """Let streams that are asked for from now on be made anew."""
+        self._shared.clear()
+
     def _enter(self, proxy: StreamProxy) -> None:
         self._proxies[proxy] = None
         self._of.setdefault(proxy.generator, {})[proxy] = None

@@ -8,7 +8,7 @@ from dyknow.errors import ProcessError
 from dyknow.runtime.failures import OnFailure
 from dyknow.runtime.generators import Label
 from dyknow.runtime.kernel import Kernel
-from dyknow.streams.policy import Policy
+from dyknow.streams.policy import Approximation, Policy, SampleEvery
 from dyknow.streams.sample import END_OF_TIME, Heartbeat, Sample
 from tests.support.streams import GivenSource, ms, text
 
@@ -182,3 +182,23 @@ def test_a_run_can_go_on_after_a_failure():
     assert text(received[A]) == "0:a 10:b 20:c"
     assert text(received[C]) == "0:a 10:b 20:c"
     assert text(received[B]) == "0:a 5:a 20:c"
+
+
+def test_a_source_that_has_stopped_the_network_is_not_waited_for():
+    """Alarms that would ring for ever do not keep a later run without an end going."""
+    kernel = Kernel()
+    kernel.add_source(A, GivenSource("5:a 3:b"))
+    policy = Policy(
+        approximation=Approximation.MOST_RECENT,
+        change=SampleEvery(ms(10)),
+        max_delay=ms(0),
+        start=ms(0),
+    )
+    kernel.subscribe(A, lambda sample: None, policy)
+
+    with pytest.raises(ProcessError, match="back in time"):
+        kernel.run()
+    kernel.run()
+
+    assert kernel.now == ms(5)
+    assert kernel.processes[A].has_ended
