@@ -25,7 +25,7 @@ _COMPARED = 1_000
 def run(plan: Plan, on_progress: OnProgress) -> Findings:
     """Measure the delay of tables of more and more objects, and of a plain value."""
     workload = Workload(many_streams(_N_STREAMS))
-    n_samples, repetitions = (10, 2) if plan.quick else (600, 20)
+    n_samples, repetitions = (10, 2) if plan.quick else (300, 100)
     values: Mapping[int, object] = {_PLAIN: 1, **{n: _table_of(n) for n in _N_OBJECTS}}
     trials = {n: _trial(workload, n_samples, value) for n, value in values.items()}
     found = measure(trials, repetitions, on_progress, what="objects in a table")
