@@ -15,7 +15,7 @@ from dyknow.kpl.syntax import Specification
 from dyknow.recordings.recording import Recording
 from dyknow.streams.process import Source
 from dyknow.streams.sample import Sample
-from dyknow.time import MILLISECOND, TimePoint
+from dyknow.time import MILLISECOND, TimePoint, text_from_duration
 from traffic.errors import RequestError
 from traffic.recording.describing import RunDescription
 from traffic.recording.rebuilding import describe, open_run, world_of
@@ -60,6 +60,8 @@ def judge_recording(
         RequestError: The specification cannot be read, or has none of the recorded outputs.
         NetworkError: The network of roads cannot be read.
     """
+    if specification is not None and not specification.is_file():
+        raise RequestError("SPECIFICATION", "a file that can be read", specification)
     with open_run(path) as recording:
         return JudgedRun(path, specification, _judged(recording, specification, on_progress))
 
@@ -114,7 +116,11 @@ def _judged(recording: Recording, path: Path | None, on_progress: OnProgress | N
     network = declared_network(build, SORTS, _SAID_AGAIN)
     until = TimePoint(description.origin.scenario.duration)
     execution = RecordedExecution(recording, until, without=(TRUTH,))
-    return judge(network, execution, on_progress=on_progress)
+    judgement = judge(network, execution, on_progress=on_progress)
+    if execution.is_whole:
+        return judgement
+    rest = f"what came after {text_from_duration(execution.until)}: the recording ends there"
+    return replace(judgement, unjudged=(*judgement.unjudged, rest))
 
 
 def _outputs(

@@ -21,6 +21,12 @@ class RecordedExecution:
     nobody knows what else there was. What stands there for viewers alone is no part of the
     execution.
 
+    Attributes:
+        topics: The topics of the streams whose samples are known.
+        existing: The topics of all streams that there were when the recording began.
+        is_whole: Whether the recording goes on to the end of the execution.
+        until: The time up to which, inclusive, everything that happened is known.
+
     Args:
         recording: The recording.
         until: The end of the run; by default the last time at which something was recorded.
@@ -42,8 +48,8 @@ class RecordedExecution:
         ]
         self.existing = _existing(recording.metadata.get("network"))
         last = max((streams[topic].last or 0 for topic in self.topics), default=0)
-        is_whole = recording.damage is None and recording.path.suffix != ".partial"
-        self.until = TimePoint(max(last, until or 0) if is_whole else last - 1)
+        self.is_whole = recording.damage is None and recording.path.suffix != ".partial"
+        self.until = TimePoint(max(last, until or 0) if self.is_whole else last - 1)
 
     def contents(self, topic: str) -> Iterator[Element]:
         """Yield samples and heartbeats of a stream.

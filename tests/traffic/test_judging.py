@@ -248,6 +248,21 @@ def test_the_command_says_whether_it_is_satisfied(recording: Path, tmp_path: Pat
     assert "expected available time 900, found available time 900000001 ns" in bad.stdout
 
 
+def test_a_run_that_was_cut_off_is_judged_as_far_as_it_goes(
+    recording: Path, tmp_path: Path
+) -> None:
+    """Of a file that ends in the middle, what is there is correct; it is told where it ends."""
+    whole = recording.read_bytes()
+    cut = tmp_path / "cut.mcap"
+    cut.write_bytes(whole[: len(whole) * 3 // 5])
+
+    judgement = judge_recording(cut).judgement
+
+    assert judgement.is_satisfied
+    (rest,) = judgement.unjudged
+    assert rest.endswith("the recording ends there")
+
+
 def test_files_that_cannot_be_used_are_refused(recording: Path, tmp_path: Path) -> None:
     """Too many files, or a specification of something else, are refused with a message."""
     other = tmp_path / "other.kpl"
@@ -255,5 +270,7 @@ def test_files_that_cannot_be_used_are_refused(recording: Path, tmp_path: Path) 
 
     with pytest.raises(RequestError, match="expected a specification with one of the outputs"):
         judge_recording(recording, other)
+    with pytest.raises(RequestError, match="SPECIFICATION: expected a file that can be read"):
+        judge_recording(recording, tmp_path / "none.kpl")
     result = CliRunner().invoke(app, ["judge", "a", "b", "c"])
     assert isinstance(result.exception, RequestError)
