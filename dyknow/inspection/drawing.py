@@ -225,8 +225,11 @@ def _push_right(layer: dict[str, int], streams: Sequence[StreamFigures]) -> None
     A process that follows others while the network runs may have got a deeper one to follow.
     """
     for _ in layer:
-        for stream in streams:
-            layer[stream.receiver] = max(layer[stream.receiver], layer[stream.provider] + 1)
+        behind = [s for s in streams if layer[s.receiver] <= layer[s.provider]]
+        if not behind:
+            return
+        for stream in behind:
+            layer[stream.receiver] = layer[stream.provider] + 1
 
 
 def _node_of(stream: StreamFigures) -> str:
