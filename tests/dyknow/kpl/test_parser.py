@@ -7,6 +7,7 @@ import pytest
 from dyknow.kpl import build, syntax
 from dyknow.kpl.check import faults, faults_of_text
 from dyknow.kpl.parser import parse_specification, parse_value
+from dyknow.kpl.printer import text_from
 from dyknow.kpl.syntax import Name, Time
 from dyknow.mtl.syntax import descendants
 from tests.support.streams import ms
@@ -60,6 +61,18 @@ def test_example_4_4_1_a_small_application():
         ("any change", syntax.AnyChange()),
         ("sample every 100", syntax.SampleEvery(Time(ms(100)))),
         ("sample every p", syntax.SampleEvery(Name("p"))),
+        (
+            "sample every p deviation d up to 400 under load",
+            syntax.SampleEvery(Name("p"), Name("d"), Time(ms(400))),
+        ),
+        ("sample every common period", syntax.SampleEveryCommonPeriod()),
+        ("sample every common", syntax.SampleEvery(Name("common"))),
+        ("use linear", syntax.UseLinear()),
+        ("use latest", syntax.UseLatest()),
+        ("all updates", syntax.AllUpdates()),
+        ("delay before approximation 50", syntax.DelayBeforeApproximation(Time(ms(50)))),
+        ("at max delay", syntax.AtMaxDelay()),
+        ("capacity 30", syntax.Capacity(30)),
         ("max delay 0.5 s", syntax.MaxDelay(Time(ms(500)))),
         ("max delay oo", syntax.MaxDelay(syntax.Endless())),
         ("from 300 to 400", syntax.FromTo(Time(ms(300)), Time(ms(400)))),
@@ -71,8 +84,8 @@ def test_example_4_4_1_a_small_application():
         ("strict order", syntax.StrictOrder()),
     ],
 )
-def test_every_constraint_of_section_4_4_5_can_be_written(policy, constraint):
-    """The five kinds of constraint, in all their forms."""
+def test_every_constraint_can_be_written(policy, constraint):
+    """The five kinds of section 4.4.5, and those of states, in all their forms."""
     specification = parse_specification(f"stream s = f[o] with {policy}")
 
     (declaration,) = specification.declarations
@@ -137,3 +150,43 @@ def test_bad_programs_give_exactly_these_messages(path):
 
     reports = "\n".join(fault.report() for fault in found)
     assert f"{reports}\n" == path.with_suffix(".err").read_text()
+
+
+WORDS = """
+all and as at before capacity common deviation each end failure for in latest linear load object on
+period select stop under up updates where
+"""
+
+
+@pytest.mark.parametrize("word", WORDS.split())
+def test_words_of_the_language_are_names_where_a_name_can_stand(word):
+    """Of all words only those of the list of reserved ones are not."""
+    text = f"""
+    parameter {word} = {word}
+    source {word} {word}
+    compunit {word} {word}({word}, {word}, ...)
+    strmgen {word} = {word} with sample every {word} on failure end
+    strmgen {word}[{word}] = {word}({word}, {word} with any change, {word}, {word} = {word})
+    strmgen f = select {word}, {word}.{word} as {word}%{word}% from {word} where {word} = {word}
+    for each {word} in {word} {{ stream {word}[{word}] = merge({word} for each {word} in {word}) }}
+    stream {word} = {word}
+    stream g = sync({word} with max delay {word}, {word}, {word})
+    """
+
+    specification = parse_specification(text)
+
+    assert len(specification.declarations) == 9
+    assert parse_specification(text_from(specification)) == specification
+
+
+def test_the_places_of_all_pieces_are_their_own():
+    """Each piece of a block knows where it was written."""
+    text = "for each m in ids {\n  strmgen a[m] = merge(b[m] for each k in ids)\n}"
+
+    (block,) = parse_specification(text, "f").declarations
+
+    assert block.span.place == "f:1:1"
+    (generator,) = block.declarations
+    assert generator.span.place == "f:2:3"
+    assert generator.process.span.place == "f:2:18"
+    assert generator.process.member.span.place == "f:2:38"

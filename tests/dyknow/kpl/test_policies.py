@@ -1,10 +1,20 @@
 """From constraints as written to policies as values."""
 
 import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
 
-from dyknow.kpl.parser import parse_specification
-from dyknow.kpl.policies import policy_from_constraints
-from dyknow.streams.policy import ANY_CHANGE, Approximation, Order, Policy, SampleEvery
+from dyknow.kpl.parser import parse_policy, parse_specification
+from dyknow.kpl.policies import policy_from_constraints, text_from_policy
+from dyknow.streams.policy import (
+    ANY_CHANGE,
+    ANY_UPDATE,
+    Approximation,
+    Order,
+    Policy,
+    SampleEvery,
+)
+from dyknow.time import Duration
 from tests.support.streams import ms
 
 
@@ -52,3 +62,33 @@ def test_constraints_that_contradict_each_other_are_refused(text, message):
     """At most one constraint of each kind, and all of them possible together."""
     with pytest.raises(ValueError, match=message):
         _policy(text)
+
+
+PERIODS = st.builds(
+    lambda period, times, deviation: SampleEvery(
+        Duration(period), Duration(deviation % period), Duration(period * times) if times else None
+    ),
+    st.integers(1, 10**10),
+    st.integers(0, 5),
+    st.integers(0, 10**9),
+)
+
+
+@settings(derandomize=True, deadline=None, max_examples=100)
+@given(
+    change=st.sampled_from([ANY_UPDATE, ANY_CHANGE]) | PERIODS,
+    order=st.sampled_from(Order),
+    max_delay=st.none() | st.integers(0, 10**12),
+    start=st.none() | st.integers(0, 10**12),
+    length=st.none() | st.integers(0, 10**12),
+    approximation=st.sampled_from(Approximation),
+)
+def test_a_policy_has_a_text_that_means_it(change, order, max_delay, start, length, approximation):
+    """Writing and reading a policy gives the same policy."""
+    end = None if length is None else (start or 0) + length
+    try:
+        policy = Policy(approximation, change, max_delay, start, end, order)
+    except ValueError:
+        policy = Policy(Approximation.NONE, change, max_delay, start, end, order)
+
+    assert policy_from_constraints(parse_policy(text_from_policy(policy))) == policy
