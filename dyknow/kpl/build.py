@@ -6,6 +6,7 @@ One function for each declaration; the parts are those of `dyknow.kpl.syntax`.
 from collections.abc import Sequence
 
 from dyknow.kpl.syntax import (
+    Configuration,
     Constraint,
     Declaration,
     GeneratorDeclaration,
@@ -13,21 +14,23 @@ from dyknow.kpl.syntax import (
     Name,
     ParameterDeclaration,
     Process,
+    Provider,
     Setting,
     Sort,
     SourceDeclaration,
     Specification,
     StreamDeclaration,
     StreamTerm,
-    Synchronisation,
     UnitDeclaration,
     UnitInstance,
     Value,
 )
+from dyknow.runtime.failures import OnFailure
 
 __all__ = [
     "application",
     "compunit",
+    "for_each",
     "label",
     "parameter",
     "source",
@@ -53,14 +56,28 @@ def compunit(sort: str, name: str, *inputs: str) -> UnitDeclaration:
     return UnitDeclaration(Sort(sort), Name(name), tuple(map(Sort, inputs)))
 
 
-def strmgen(name: Label, process: Process) -> GeneratorDeclaration:
-    """Return `strmgen NAME = PROCESS`."""
-    return GeneratorDeclaration(name, process)
+def strmgen(
+    name: Label,
+    process: Process,
+    *constraints: Constraint,
+    on_failure: OnFailure = OnFailure.STOP,
+) -> GeneratorDeclaration:
+    """Return `strmgen NAME = PROCESS with CONSTRAINTS on failure ...`."""
+    return GeneratorDeclaration(name, process, constraints, on_failure)
 
 
-def stream(name: str, what: StreamTerm) -> StreamDeclaration:
+def stream(name: str | Label, what: StreamTerm) -> StreamDeclaration:
     """Return `stream NAME = TERM`."""
-    return StreamDeclaration(label(name), what)
+    return StreamDeclaration(label(name) if isinstance(name, str) else name, what)
+
+
+def for_each(
+    member: str,
+    members: StreamTerm,
+    *declarations: GeneratorDeclaration | StreamDeclaration | Configuration,
+) -> Configuration:
+    """Return `for each MEMBER in TERM { DECLARATIONS }`."""
+    return Configuration(Name(member), members, declarations)
 
 
 def parameter(name: str, default: Value) -> ParameterDeclaration:
@@ -73,7 +90,7 @@ def label(feature: str, *objects: str) -> Label:
     return Label(Name(feature), tuple(map(Name, objects)))
 
 
-def term(provider: Label | Synchronisation, *constraints: Constraint) -> StreamTerm:
+def term(provider: Provider, *constraints: Constraint) -> StreamTerm:
     """Return `PROVIDER with CONSTRAINTS`."""
     return StreamTerm(provider, constraints)
 

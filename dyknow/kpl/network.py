@@ -139,6 +139,7 @@ class Network:
         Raises:
             ServiceError: There is no such declaration, or more than one.
             LabelInUseError: Others need it; they are named.
+            SpecificationErrors: What would remain has faults.
         """
         given = (names,) if isinstance(names, str) else tuple(names)
         chosen = declarations_called(given, self._specification)
@@ -146,9 +147,11 @@ class Network:
         forbid_use(chosen, self._specification, bound)
         removed = [bound.declarations[at] for at in chosen]
         self._forbid_use_at_work(removed)
-        self._take_out(removed)
         old = enumerate(self._specification.declarations)
-        self._specification = Specification(tuple(d for at, d in old if at not in chosen))
+        remaining = Specification(tuple(each for at, each in old if at not in chosen))
+        check(remaining, self._values)
+        self._take_out(removed)
+        self._specification = remaining
         self._wanted -= set(_outputs_in(Specification(tuple(removed))))
         self._configurations.settle()
 

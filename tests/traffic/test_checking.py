@@ -3,7 +3,7 @@
 import pytest
 
 from traffic.bundled import data_folder
-from traffic.checking import faults_of_file
+from traffic.checking import faults_of_file, warnings_of_file
 from traffic.errors import RequestError
 
 WRITTEN = sorted(
@@ -69,3 +69,25 @@ def test_the_ending_says_what_a_file_is(tmp_path):
     """A file of an unknown kind cannot be checked."""
     with pytest.raises(RequestError, match=r"ends in one of \.kpl, \.chronicle, \.mtl, \.toml"):
         faults_of_file(tmp_path / "a.txt")
+
+
+def test_what_no_output_needs_is_a_warning(tmp_path):
+    """It has its place and its line as a fault has, and is none."""
+    path = tmp_path / "s.kpl"
+    path.write_text("source n s\nstrmgen a = s\n  strmgen b = s\nstream a = a\n")
+
+    assert faults_of_file(path) == []
+    assert warnings_of_file(path) == [
+        f"{path}:3:3: warning: 'b' is not used\n  strmgen b = s\n  ^^^^^^^^^^^^^"
+    ]
+    assert warnings_of_file(tmp_path / "s.toml") == []
+
+
+def test_all_faults_of_a_specification_are_told_at_once(tmp_path):
+    """Those of syntax as well as those of meaning, in reading order."""
+    path = tmp_path / "s.kpl"
+    path.write_text("strmgen a = = s\nstrmgen b = s\nstrmgen c = s)\nstream d = e\n")
+
+    places = [fault.split(": ")[0].removeprefix(f"{path}:") for fault in faults_of_file(path)]
+
+    assert places == ["1:13", "2:13", "3:14", "4:12"]

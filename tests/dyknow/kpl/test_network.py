@@ -1,8 +1,11 @@
 """Networks that are changed while they run."""
 
 import json
+from contextlib import suppress
 
 import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
 
 from dyknow.errors import (
     KPLSyntaxError,
@@ -356,3 +359,58 @@ def test_parts_of_a_specification_can_be_added_as_trees():
     network.add(parse_specification("stream more = a"))
 
     assert network.outputs == ("out", "more")
+
+
+def test_a_process_may_end_alone():
+    """With `on failure end` the rest goes on."""
+    text = """
+    source n numbers
+    compunit n Distance(n, n)
+    strmgen a = numbers
+    strmgen broken = Distance(a, a) on failure end
+    stream broken = broken
+    stream a = a
+    """
+    network = network_of(text, {"numbers": "0:1 10:x 20:3"})
+    failures = []
+    network.kernel.subscribe_failures(failures.append)
+
+    assert Collector(network).run() == {"broken": "0:0", "a": "0:1 10:x 20:3"}
+    assert [failure.label for failure in failures] == ["broken"]
+
+
+PARTS = [
+    "strmgen c = Echo(a)",
+    "strmgen d = Echo(sync(c, b) with use latest)",
+    "strmgen e = merge(c, Echo_b)".replace("Echo_b", "b with to 20"),
+    "strmgen f = Echo(select * from merge(a, b))",
+    "stream c = c",
+    "stream d = d",
+    "stream e = e with any change",
+    "stream f = f",
+    "stream joined = sync(merge(a, b), c) with use latest",
+]
+
+
+@settings(derandomize=True, deadline=None, max_examples=60)
+@given(st.lists(st.tuples(st.booleans(), st.sampled_from(PARTS)), max_size=14))
+def test_a_changed_network_is_that_of_its_specification(steps):
+    """Whatever was added and removed before, it gives what a new one gives."""
+    base = "source n s1 source n s2 compunit n Echo(any) strmgen a = s1 strmgen b = s2 "
+    sources = {"s1": "0:1 10:2 20:3", "s2": "5:x 15:y 25:z"}
+    network = network_of(base, sources)
+    for is_addition, part in steps:
+        with suppress(SpecificationErrors, ServiceError):
+            if is_addition:
+                network.add(part)
+            else:
+                network.remove(part.partition(" = ")[0])
+
+    declared = text_from(network.specification)
+    fresh = network_of(declared, sources)
+
+    assert set(fresh.outputs) == set(network.outputs)
+    assert Collector(fresh).run() == Collector(network).run()
+    taken = {stream.provider for stream in network.kernel.streams}
+    for label in network.kernel.labels:
+        assert f"strmgen {label} = " in declared or label in taken

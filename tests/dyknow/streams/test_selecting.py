@@ -231,3 +231,19 @@ def test_the_names_of_fields():
     assert list(field_names(_Car(1, 2))) == ["pose", "name"]
     assert list(field_names(_Pose({}, 0.0))) == ["position", "heading"]
     assert list(field_names((1, 2))) == list(field_names("text")) == []
+
+
+def test_without_fields_the_value_stays_as_it_is():
+    """Conditions still choose samples, and rows of tables."""
+    select = Select([], [Condition(("k",), 2)])
+    kept, lost = {"k": 2, "v": 1}, {"k": 3, "v": 1}
+    table = Table("car", np.array([1, 2]), {"k": np.array([2, 3])})
+
+    values = [
+        sample.value
+        for value in (kept, lost, table)
+        for sample in select.push(ms(1), (Sample(value, ms(1), ms(1)),))
+    ]
+
+    assert values[0] is kept
+    assert [list(each.ids) for each in values[1:]] == [[1]]
