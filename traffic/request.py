@@ -9,12 +9,21 @@ from dyknow.time import MILLISECOND, Duration, duration_from_text
 from traffic.errors import RequestError
 from traffic.scenarios import CameraSettings, Scenario, find_scenario, scenario_of_configuration
 
-__all__ = ["DEFAULT_PERIOD", "RecordingRequest", "RunRequest", "View", "labels_from"]
+__all__ = [
+    "DEFAULT_PERIOD",
+    "FRAME_PERIOD",
+    "RecordingRequest",
+    "RunRequest",
+    "View",
+    "labels_from",
+]
 
 DEFAULT_PERIOD = Duration(100 * MILLISECOND)
 """Of the reasoning."""
 
-_FRAME_PERIOD = Duration(40 * MILLISECOND)
+FRAME_PERIOD = Duration(40 * MILLISECOND)
+"""Of the cameras."""
+
 _LONGEST_STEP = 100
 _SHORTEST_PERIOD = 10
 _FARTHEST = 1e7
@@ -84,6 +93,7 @@ class RunRequest:
         recording: The streams in a file, if wanted.
         specification: File of the network of processes; None for the bundled one.
         real_time: Whether to keep to the clock on the wall.
+        longest_frame_period: How far apart images may be when the work falls behind that clock.
     """
 
     scenario: Scenario
@@ -96,6 +106,7 @@ class RunRequest:
     recording: RecordingRequest | None = None
     specification: Path | None = None
     real_time: bool = False
+    longest_frame_period: Duration = FRAME_PERIOD
 
     @classmethod
     def from_texts(  # noqa: PLR0913, one for each option of the command
@@ -116,6 +127,7 @@ class RunRequest:
         record_images: bool = False,
         specification: Path | None = None,
         real_time: bool = False,
+        longest_frame_period: str | None = None,
     ) -> "RunRequest":
         """Read what a user wrote on the command line.
 
@@ -128,6 +140,7 @@ class RunRequest:
             _refuse(look_at, "--look-at", View.VISION)
             _refuse(overlay, "--overlay", View.VISION)
             _refuse(record_images, "--record-images", View.VISION)
+            _refuse(longest_frame_period, "--longest-frame-period", View.VISION)
         else:
             _refuse(position_noise, "--position-noise", View.TRUTH)
         if not 0 <= position_noise < math.inf:
@@ -143,7 +156,7 @@ class RunRequest:
             raise RequestError("--seed", "a number of at least 0", seed)
         period = _period(sample_period, seen)
         asked = _scenario(scenario, sumocfg).model_copy(
-            update={"step_length": _FRAME_PERIOD if seen is View.VISION else _step(period)}
+            update={"step_length": FRAME_PERIOD if seen is View.VISION else _step(period)}
         )
         if duration is not None:
             asked = asked.model_copy(update={"duration": _duration(duration, "--duration")})
@@ -162,6 +175,7 @@ class RunRequest:
             recording=recording,
             specification=specification,
             real_time=real_time,
+            longest_frame_period=_longest_frame_period(longest_frame_period, real_time=real_time),
         )
 
 
@@ -228,11 +242,23 @@ def _duration(text: str, option: str) -> Duration:
 
 def _period(text: str, view: View) -> Duration:
     period = _duration(text, "--sample-period")
-    shortest = _FRAME_PERIOD if view is View.VISION else Duration(_SHORTEST_PERIOD * MILLISECOND)
+    shortest = FRAME_PERIOD if view is View.VISION else Duration(_SHORTEST_PERIOD * MILLISECOND)
     if period < shortest or period % (_SHORTEST_PERIOD * MILLISECOND):
         wanted = f"a multiple of {_SHORTEST_PERIOD} ms, at least {shortest // MILLISECOND} ms"
         raise RequestError("--sample-period", wanted, text)
     return period
+
+
+def _longest_frame_period(text: str | None, *, real_time: bool) -> Duration:
+    option = "--longest-frame-period"
+    if text is None:
+        return FRAME_PERIOD
+    if not real_time:
+        raise RequestError(option, "nothing, because it only has a meaning with --real-time", text)
+    longest = _duration(text, option)
+    if longest % FRAME_PERIOD:
+        raise RequestError(option, f"a multiple of {FRAME_PERIOD // MILLISECOND} ms", text)
+    return longest
 
 
 def _step(period: Duration) -> Duration:

@@ -112,11 +112,13 @@ class Lateness(_Value):
         mean_ms: Over all instants.
         late_share: Share of the instants whose work was not done one step of the simulation
             after them.
+        period_changes: How often a sample period was lengthened or restored because of that.
     """
 
     max_ms: float
     mean_ms: float
     late_share: float
+    period_changes: int = 0
 
 
 class Timing(_Value):

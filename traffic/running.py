@@ -15,7 +15,9 @@ from dyknow.kpl.plan import Network
 from dyknow.kpl.syntax import Specification
 from dyknow.runtime.clock import WallClock
 from dyknow.runtime.failures import Failure
+from dyknow.runtime.kernel import Kernel
 from dyknow.runtime.subscriptions import StreamViolation
+from dyknow.service.governor import GovernorSettings, LoadGovernor
 from dyknow.streams.sample import Sample
 from dyknow.streams.table import Table
 from dyknow.time import MILLISECOND, SECOND, Duration, TimePoint, text_from_duration
@@ -26,7 +28,7 @@ from traffic.origin import Origin, origin_of, write_origin
 from traffic.overlaying import Overlay
 from traffic.recording.describing import RunDescription
 from traffic.recording.writing import recorded
-from traffic.request import DEFAULT_PERIOD, RunRequest, View
+from traffic.request import DEFAULT_PERIOD, FRAME_PERIOD, RunRequest, View
 from traffic.results import Lateness, RunResult, Timing, new_folder, run_folder, write_result
 from traffic.scoring.score import Scorer, Verdict, unjudged
 from traffic.sumo.opening import network_of, open_simulation
@@ -175,19 +177,22 @@ class Watch:
         """Run to the end and judge what was recognised.
 
         The *companion* keeps pace with it. In *real_time* an instant is worked on when it is
-        that time on the clock on the wall; nothing else changes.
+        that time on the clock on the wall; nothing else changes, unless the specification allows
+        streams to stand back when the work falls behind.
         """
         total = told.duration / SECOND
+        kernel = self._network.kernel
+        pace = _Pace(kernel, told.deadline) if real_time else None
 
         def tell(now: TimePoint) -> None:
+            if pace is not None:
+                pace.governor.watch(now)
             if companion is not None:
                 companion.advance(now)
             on_progress(now / SECOND, total)
 
-        kernel = self._network.kernel
-        clock = WallClock(told.deadline) if real_time else None
         began = time.perf_counter()
-        kernel.run(TimePoint(told.duration), tell, clock)
+        kernel.run(TimePoint(told.duration), tell, pace.clock if pace else None)
         wall = time.perf_counter() - began
         if companion is not None:
             companion.finish()
@@ -203,7 +208,7 @@ class Watch:
                 wall_s=wall,
                 real_time_factor=total / wall,
                 stages={str(label): each.seconds for label, each in kernel.accounts.items()},
-                lateness=_lateness(clock) if clock is not None else None,
+                lateness=pace.lateness() if pace else None,
             ),
             violations=dict(self._violations),
             failures=self._failures,
@@ -333,9 +338,11 @@ def _parameters(request: RunRequest, specification: Specification) -> dict[str, 
     """
     declared = Declarations(specification).parameters
     period, noise = request.sample_period, request.position_noise
+    longest = request.longest_frame_period
     for name, option, is_set in (
         ("sample_period", "--sample-period", period != DEFAULT_PERIOD),
         ("position_noise", "--position-noise", noise != 0),
+        ("longest_frame_period", "--longest-frame-period", longest != FRAME_PERIOD),
     ):
         if is_set and name not in declared:
             expected = f"a specification with the parameter '{name}'"
@@ -344,6 +351,7 @@ def _parameters(request: RunRequest, specification: Specification) -> dict[str, 
         "view": str(request.view),
         "sample_period": period / MILLISECOND,
         "position_noise": noise,
+        "longest_frame_period": longest / MILLISECOND,
     }
     return {name: value for name, value in values.items() if name in declared}
 
@@ -361,10 +369,20 @@ def told_of(origin: Origin) -> Told:
     return Told(scenario.name, settings, scenario.duration, scenario.step_length)
 
 
-def _lateness(clock: WallClock) -> Lateness:
-    late = clock.lateness
-    return Lateness(
-        max_ms=late.largest / MILLISECOND,
-        mean_ms=late.mean / MILLISECOND,
-        late_share=clock.n_missed / late.samples if late.samples else 0.0,
-    )
+class _Pace:
+    """The clock on the wall, and the governor of what may stand back when work is late by it."""
+
+    def __init__(self, kernel: Kernel, deadline: Duration) -> None:
+        self.clock = WallClock(deadline)
+        settings = GovernorSettings(late_after=deadline)
+        self.governor = LoadGovernor(kernel, lambda: self.clock.last_lateness, settings)
+
+    def lateness(self) -> Lateness:
+        """Return how late the work was done."""
+        late = self.clock.lateness
+        return Lateness(
+            max_ms=late.largest / MILLISECOND,
+            mean_ms=late.mean / MILLISECOND,
+            late_share=self.clock.n_missed / late.samples if late.samples else 0.0,
+            period_changes=len(self.governor.changes),
+        )

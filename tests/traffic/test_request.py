@@ -55,6 +55,15 @@ def test_duration_and_camera_of_the_scenario_can_be_replaced():
         ({"seed": -1}, "--seed: expected a number of at least 0"),
         ({"streams": "cars"}, "--streams: expected nothing, because it only has a meaning with"),
         ({"record_images": True}, "--record-images: expected nothing, because it only has"),
+        (
+            {"longest_frame_period": "80"},
+            "nothing, because it only has a meaning with --real-time",
+        ),
+        ({"longest_frame_period": "90", "real_time": True}, "expected a multiple of 40 ms"),
+        (
+            {"longest_frame_period": "80", "view": "truth"},
+            "--longest-frame-period: expected nothing",
+        ),
         ({"record": Path("x.bag")}, "--record: expected a name that ends in .mcap"),
         ({"record": Path("no/x.mcap")}, "--record: expected a file in a folder that exists"),
         ({"record": Path("x.mcap"), "streams": " , "}, "--streams: expected labels of streams"),

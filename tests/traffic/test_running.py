@@ -8,6 +8,9 @@ import numpy as np
 import pytest
 
 from dyknow.errors import ProcessError, SpecificationErrors
+from dyknow.kpl.names import streams_of
+from dyknow.kpl.syntax import GeneratorDeclaration, Label, Name
+from dyknow.runtime.clock import WallClock
 from dyknow.streams.sample import Sample
 from dyknow.streams.table import Table
 from dyknow.time import MILLISECOND, SECOND, Duration, TimePoint
@@ -18,9 +21,15 @@ from traffic.errors import RequestError, ResultError
 from traffic.request import RunRequest
 from traffic.results import read_result
 from traffic.running import Told, Watch, run_scenario
-from traffic.system import MonitoringSystem, bundled_specification, specification_from
+from traffic.system import (
+    MonitoringSystem,
+    bundled_specification,
+    read_specification,
+    specification_from,
+)
 from traffic.world import World
 
+VEHICLES = Label(Name("vehicles"))
 ROOT = Path(__file__).parents[2]
 CROSSING = data_folder() / "networks" / "crossing" / "crossing.net.xml"
 PERCEPT = {
@@ -100,7 +109,7 @@ class Vehicles:
             "colour": np.full((3, 3), 200, dtype=np.uint8),
             "vehicle_class": np.zeros(3, dtype=np.int8),
         }
-        for i in range(25):
+        for i in range(100):
             time = TimePoint(i * 40 * MILLISECOND)
             yield Sample(Table("vehicle", np.arange(3) + 1000, columns), time, time)
 
@@ -112,12 +121,12 @@ compunit percepts NoisyPositions(vehicles)
 """
 
 
-def watched(text, **options):
-    """Let a system of three standing cars run for a second; return its result."""
+def watched(text, seconds=1, **options):
+    """Let a system of three standing cars run for some seconds; return its result."""
     world = World(read_road_map(CROSSING), Vehicles(), None, np.random.default_rng(1))
     specification = specification_from(PERCEPTS + text, "x.kpl")
     system = MonitoringSystem(world, {}, specification=specification)
-    told = Told("x", {}, duration=SECOND, deadline=Duration(40 * MILLISECOND))
+    told = Told("x", {}, duration=Duration(seconds * SECOND), deadline=Duration(40 * MILLISECOND))
     return Watch(system, None).complete(told, lambda *_: None, **options)
 
 
@@ -212,6 +221,34 @@ def test_real_time_changes_nothing_but_the_pace():
     assert fast.model_copy(update={"timing": None}) == paced.model_copy(update={"timing": None})
 
 
+class _Late(WallClock):
+    """A clock by which all work is late, and for which nobody waits."""
+
+    def await_instant(self, instant):
+        """Return at once."""
+
+    def finish(self, instant):
+        """Call the work 100 ms late."""
+        self.last_lateness = Duration(100 * MILLISECOND)
+
+
+def test_work_that_falls_behind_lets_streams_stand_back(monkeypatch):
+    """After a second of being late a stream is sampled less often, if it says that it may be."""
+    monkeypatch.setattr("traffic.running.WallClock", _Late)
+    text = """
+        parameter slack = 40
+        strmgen percepts = NoisyPositions(
+            vehicles with sample every 40 up to slack under load, error = 0)
+        stream p = percepts
+        """
+    firm = watched(text, seconds=3, real_time=True)
+    yielding = watched(text.replace("slack = 40", "slack = 80"), seconds=3, real_time=True)
+
+    assert firm.timing.lateness.period_changes == 0
+    assert yielding.timing.lateness.period_changes == 1
+    assert yielding.violations == {}
+
+
 @pytest.mark.parametrize("view", ["vision", "truth"])
 def test_percepts_tell_nothing_that_a_camera_cannot_see(view):
     """A percept has the columns of vision in both views: no lane, no name, no road."""
@@ -235,15 +272,15 @@ def test_percepts_tell_nothing_that_a_camera_cannot_see(view):
 
 def test_only_cameras_and_the_noisy_view_receive_the_vehicles():
     """In the specification nothing else takes the stream of the simulator's vehicles."""
-    specification = data_folder() / "specifications" / "monitoring.kpl"
-    lines = [line.partition("#")[0] for line in specification.read_text("utf-8").splitlines()]
+    specification = read_specification(bundled_specification())
     takers = {
-        line.split("=")[1].split("(")[0].strip()
-        for line in lines
-        if line.startswith("strmgen") and "vehicles" in line.partition("=")[2]
+        declaration.label.text
+        for declaration in specification.declarations
+        if isinstance(declaration, GeneratorDeclaration)
+        and any(term.provider == VEHICLES for term in streams_of(declaration.process))
     }
 
-    assert takers == {"vehicles", "ColourCamera", "ThermalCamera", "NoisyPositions"}
+    assert takers == {"colour_images", "thermal_images", "percepts[truth]"}
 
 
 def test_hidden_columns_are_read_for_the_truth_alone():

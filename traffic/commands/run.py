@@ -59,6 +59,10 @@ def run(
     real_time: Annotated[
         bool, typer.Option("--real-time", help="Keep to the clock on the wall; same results.")
     ] = False,
+    longest_frame_period: Annotated[
+        str | None,
+        typer.Option(help="With --real-time: when behind, film less often, down to this."),
+    ] = None,
 ) -> None:
     """Simulate traffic, watch it, and report what was recognised, scored against the truth."""
     from traffic.commands.showing import progress, show_result
@@ -81,6 +85,7 @@ def run(
         record_images=record_images,
         specification=specification,
         real_time=real_time,
+        longest_frame_period=longest_frame_period,
     )
     with progress() as on_progress:
         result, folder = run_scenario(request, on_progress)

@@ -161,6 +161,8 @@ def _timing(result: RunResult) -> Table:
             f"done {late.mean_ms:.1f} ms after each instant on average, {late.max_ms:.1f} ms "
             f"at most; {late.late_share:.1%} of the instants missed the deadline"
         )
+        if late.period_changes:
+            table.caption += f"; sample periods were changed {late.period_changes} times"
     total = sum(timing.stages.values()) or 1.0
     for stage, spent in sorted(timing.stages.items(), key=lambda item: -item[1]):
         table.add_row(escape(stage), f"{spent:.2f}", f"{spent / total:.0%}")
