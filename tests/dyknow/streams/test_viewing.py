@@ -8,6 +8,7 @@ from hypothesis import strategies as st
 from dyknow.streams.sample import NO_VALUE, Sample
 from dyknow.streams.table import Table
 from dyknow.streams.viewing import View
+from tests.support.laws import assert_unit_laws
 from tests.support.streams import ms
 
 
@@ -40,3 +41,11 @@ def test_what_is_no_table_is_an_error_and_no_value_is_nothing():
     assert _view("car3", NO_VALUE) == ()
     with pytest.raises(TypeError, match="expected a table to look for 'car3' in, found int"):
         _view("car3", 3)
+
+
+def test_a_view_keeps_the_laws():
+    """A view is a unit like any other."""
+    tables = [Table("car", np.array(ids), {}) for ids in ([3], [4], [3, 4])]
+    given_stream = [Sample(each, ms(10 * at), ms(10 * at)) for at, each in enumerate(tables)]
+
+    assert_unit_laws(lambda: View("car3"), given_stream, until=ms(50), tick=ms(7))
