@@ -1,8 +1,8 @@
 """Metric temporal logic over streams of states: the language, its meaning, and progression.
 
 Read in this order: `syntax`, `grammar.lark`, `parser`, `printer`, `check`, `quantifiers`,
-`semantics`, `columns`, `instants`, `graph`, `residuals`, `wording`, `progression`, `monitors`,
-`symbols`, `groups`.
+`symbols`, `semantics`, `truth`, `columns`, `instants`, `graph`, `residuals`, `moments`,
+`decisions`, `rules`, `wording`, `progression`, `monitors`, `groups`.
 """
 
 from dyknow.mtl.columns import evaluate_atoms

@@ -9,6 +9,7 @@ as usual. Rows that a caller masks are false and are not looked at.
 
 import operator
 from collections.abc import Callable, Mapping, Sequence
+from functools import cached_property
 from typing import Any, Protocol
 
 import numpy as np
@@ -18,6 +19,7 @@ from dyknow.errors import FeatureError
 from dyknow.mtl import syntax
 from dyknow.mtl.printer import text_from_formula
 from dyknow.mtl.syntax import Atom, Feature, Term, descendants
+from dyknow.mtl.truth import OfState, StateTruth
 from dyknow.source_text import nearest_name
 
 __all__ = ["AtomColumns", "Compiled", "evaluate_atoms"]
@@ -92,7 +94,6 @@ class AtomColumns:
         found = {text_from_formula(t): None for t in terms if isinstance(t, Feature)}
         self.features = tuple(found)
         self._evaluate = [_compiled_atom(atom) for atom in self.atoms]
-        self._printed = frozenset(found)
         self._bracketed = {term: _bracketed(term) for term in self.features}
 
     def of_features(
@@ -114,17 +115,31 @@ class AtomColumns:
             truth[at, rows] = evaluate(columns)
         return truth
 
-    def of_state(self, state: Mapping[str, Any]) -> int:
-        """Return the truth of atom number i in bit i, for one state of plain values."""
-        values = state
-        if not self._printed <= state.keys():
-            values = {term: self._value(term, state) for term in self.features}
+    @cached_property
+    def of_state(self) -> OfState:
+        """A function from one state of plain values to the truth of atom number i in bit i.
+
+        It raises what `evaluate_atoms` raises.
+        """
+        return self._state_truth.of
+
+    @cached_property
+    def _state_truth(self) -> StateTruth:
+        return StateTruth(self.atoms, self._of_unusual_state)
+
+    def _of_unusual_state(self, state: Mapping[str, Any]) -> int:
+        values = {term: self._value(term, state) for term in self.features}
+        keys = {term: self._key(term, state) for term in self.features}
+        self._state_truth.spell(keys)
         return sum(bool(evaluate(values)) << at for at, evaluate in enumerate(self._evaluate))
 
     def _value(self, term: str, features: Mapping[str, Any]) -> Any:
+        return features[self._key(term, features)]
+
+    def _key(self, term: str, features: Mapping[str, Any]) -> str:
         for key in (term, self._bracketed[term]):
             if key in features:
-                return features[key]
+                return key
         nearest = nearest_name(term, features)
         hint = f"; did you mean '{nearest}'?" if nearest else ""
         raise FeatureError(term, "a value in the state", f"none{hint}")
@@ -181,13 +196,18 @@ def _compiled_arithmetic(term: syntax.Arithmetic) -> _Evaluate:
     compute = _COMPUTE[term.operator]
     left, right = _compiled_term(term.left), _compiled_term(term.right)
     left_text, right_text = text_from_formula(term.left), text_from_formula(term.right)
+    text = text_from_formula(term)
 
     def evaluate(values: _Values) -> Any:
         one = _of_kind("number", left(values), left_text)
         other = _of_kind("number", right(values), right_text)
         if term.operator == "/" and np.any(np.equal(other, 0)):
             raise FeatureError(right_text, "a divisor other than 0", "0")
-        return compute(one, other)
+        try:
+            return compute(one, other)
+        except OverflowError:
+            expected = "a number of a size that can be computed with"
+            raise FeatureError(text, expected, "a larger one") from None
 
     return evaluate
 

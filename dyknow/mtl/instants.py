@@ -126,7 +126,7 @@ def until(left: Instants, right: Instants, least: int, most: int) -> Instants:
 
 
 def _moved(bound: int, by: int) -> int:
-    return bound if bound in {PAST, FUTURE} else bound + by
+    return bound if bound in (PAST, FUTURE) else bound + by
 
 
 def _less(bound: int, by: int) -> int:

@@ -11,7 +11,9 @@ import numpy as np
 import numpy.typing as npt
 
 from dyknow.errors import StateOrderError
+from dyknow.mtl.decisions import Times
 from dyknow.mtl.progression import ProgressionTable, Residuals, Truths, Verdicts
+from dyknow.mtl.rules import NEVER
 from dyknow.mtl.syntax import Formula, TimeModel, Verdict
 from dyknow.time import Duration, TimePoint
 
@@ -98,49 +100,44 @@ class Monitor:
         if not isinstance(formula, ProgressionTable):
             formula = ProgressionTable(formula, time_model=time_model)
         self.table: ProgressionTable = formula
-        self._residual = formula.initial
-        self._time: TimePoint | None = None
-        formula.register(self)
+        self._shape = formula.rules.initial
+        self._past: Times = (NEVER,)
 
     def step(self, now: TimePoint, state: Mapping[str, Any]) -> Verdict:
         """Take in the state at *now*, later than the one before, and return the verdict.
 
         Args:
             now: The time of the state.
-            state: The features by their printed terms; more than needed may be given.
+            state: The features by their printed terms; more than needed may be given. When the
+                formula is decided, none are needed.
 
         Raises:
             FeatureError: A feature is missing, of the wrong kind, or NaN; nothing has changed.
             StateOrderError: The state is not later than the one before; nothing has changed.
         """
-        return self.step_bits(now, self.table.columns.of_state(state))
+        bits = 0 if self._shape.verdict else self.table.columns.of_state(state)
+        return self.step_bits(now, bits)
 
     def step_bits(self, now: TimePoint, bits: int) -> Verdict:
         """Take in a state as `step` does; bit i of *bits* is the truth of `table.atoms[i]`."""
-        elapsed = _elapsed(self._time, now)
-        self._residual = self.table.successor(self._residual, bits, elapsed)
-        self._time = now
-        self.table.collect_when_full()
-        return self.table.verdict(self._residual)
-
-    @property
-    def residuals(self) -> Residuals:
-        """The number of the residual in the table, shape (1,)."""
-        return np.array([self._residual], dtype=np.int64)
-
-    @residuals.setter
-    def residuals(self, numbers: Residuals) -> None:
-        (self._residual,) = numbers.tolist()
+        past = self._past
+        if now <= past[0]:
+            raise StateOrderError(now, TimePoint(past[0]))
+        following = self._shape[bits](now, past)
+        if following is None:
+            following = self.table.rules.learn(self._shape, past, bits, now)
+        self._shape, self._past = following
+        return self._shape.verdict
 
     @property
     def verdict(self) -> Verdict:
         """The present verdict."""
-        return self.table.verdict(self._residual)
+        return self._shape.verdict
 
     @property
     def residual(self) -> Formula:
         """What must hold from now on."""
-        return self.table.residual(self._residual)
+        return self.table.formula_left(self._shape, self._past)
 
 
 def _elapsed(last: TimePoint | None, now: TimePoint) -> Duration:

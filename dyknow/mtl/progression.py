@@ -2,12 +2,15 @@
 
 Residuals are numbered. A step looks up, for each object, (residual, truth of the atoms) in the
 table for the time that has elapsed, and only pairs that no object has shown before are worked
-out (`dyknow.mtl.residuals`). With steady sampling the tables are soon complete and a step is one
-`numpy.take`; with irregular sampling each elapsed time has a table of its own, of which the
-last few are kept.
+out, by the rules that have been learnt (`dyknow.mtl.rules`). With steady sampling the tables are
+soon complete and a step is one `numpy.take`; with irregular sampling each elapsed time has a
+table of its own, of which the last few are kept, and a step costs some microseconds more for
+each different pair.
 """
 
 from collections import OrderedDict
+from dataclasses import dataclass
+from itertools import pairwise
 from typing import Protocol
 from weakref import WeakSet
 
@@ -16,13 +19,22 @@ import numpy.typing as npt
 
 from dyknow.mtl.check import check
 from dyknow.mtl.columns import AtomColumns
+from dyknow.mtl.decisions import Times
 from dyknow.mtl.graph import FormulaGraph
-from dyknow.mtl.residuals import Progression, Residual
+from dyknow.mtl.rules import NEVER, RuleBook, Shape
 from dyknow.mtl.syntax import FALSE, TRUE, Atom, Formula, TimeModel, Verdict
 from dyknow.mtl.wording import formula_from_residual
 from dyknow.time import Duration
 
-__all__ = ["DEFAULT_LIMIT", "Holder", "ProgressionTable", "Residuals", "Truths", "Verdicts"]
+__all__ = [
+    "DEFAULT_LIMIT",
+    "Holder",
+    "Memory",
+    "ProgressionTable",
+    "Residuals",
+    "Truths",
+    "Verdicts",
+]
 
 Residuals = npt.NDArray[np.int64]
 Truths = npt.NDArray[np.bool_]
@@ -33,11 +45,30 @@ DEFAULT_LIMIT = 1 << 15
 
 _FALSE, _TRUE, _INITIAL = 0, 1, 2
 _CELLS = 1 << 21
-_MOST_REMEMBERED = 1 << 16
 _MOST_TABULATED_ATOMS = 8
 _VERDICTS = (Verdict.FALSE, Verdict.TRUE)
 _UNKNOWN = -1
 _NO_TABLE = np.empty(0, dtype=np.int64)
+
+
+_Residual = tuple[Shape, Times]
+
+
+@dataclass(frozen=True, slots=True)
+class Memory:
+    """What a table keeps.
+
+    Attributes:
+        residuals: The number of residuals.
+        rules: The number of rules.
+        limit: The limit on each of them.
+        cells: The number of entries of tables, of eight bytes.
+    """
+
+    residuals: int
+    rules: int
+    limit: int
+    cells: int
 
 
 class Holder(Protocol):
@@ -52,8 +83,9 @@ class ProgressionTable:
     A residual says what must hold after the last state. Numbers 0 and 1 stand for false and
     true. A table may be shared; when it has more than *limit* residuals, `collect_when_full`
     forgets those that no registered holder has, and renumbers the others. Memory is bounded by
-    *limit* residuals (2 kB each), or twice those in use if that is more, 16 MB of tables (or
-    that of one elapsed time, if it is more), and 65 536 remembered steps of single objects.
+    *limit* residuals (half a kilobyte each), or twice those in use if that is more, by *limit*
+    rules (some kilobytes each), and by 16 MB of tables (or that of one elapsed time, if it is
+    more); `memory` says how much of that is used.
 
     Attributes:
         formula: The formula.
@@ -62,7 +94,8 @@ class ProgressionTable:
         columns: The same, ready to be evaluated over columns.
         initial: The number of the residual before the first state.
         time_model: At which time-points there is a state.
-        limit: How many residuals are kept before unused ones are forgotten.
+        limit: How many residuals, and how many rules, are kept before unused ones are forgotten.
+        rules: How the residuals follow from one another.
     """
 
     def __init__(
@@ -86,17 +119,21 @@ class ProgressionTable:
         self.columns = AtomColumns(self.atoms)
         self.initial = _INITIAL
         self.limit = limit
-        self._progression = Progression(graph)
+        self.rules = RuleBook(graph, limit)
         self._width = 1 << len(self.atoms)
         self._holders: WeakSet[Holder] = WeakSet()
         self._in_use = 0
         self._forget_all()
 
     def _forget_all(self) -> None:
-        self._residuals: list[Residual | None] = [None, None, None]
-        self._number: dict[Residual, int] = {}
+        rules = self.rules
+        self._residuals: list[_Residual] = [
+            (rules.false, (0,)),
+            (rules.true, (0,)),
+            (rules.initial, (NEVER,)),
+        ]
+        self._number: dict[tuple[int, Times], int] = {}
         self._tables: OrderedDict[int, npt.NDArray[np.int64]] = OrderedDict()
-        self._memory: dict[tuple[int, int, int], int] = {}
 
     def __len__(self) -> int:
         """Return how many residuals are known, true, false, and the initial one included."""
@@ -155,10 +192,21 @@ class ProgressionTable:
         An interval that reaches back before 0 speaks of instants that have been seen already
         and at which the body is not decided yet.
         """
-        residual = self._residuals[number]
-        if residual is None:
-            return (FALSE, TRUE, self.formula)[number]
-        return formula_from_residual(self._graph, self._progression, residual)
+        return self.formula_left(*self._residuals[number])
+
+    def formula_left(self, shape: Shape, past: Times) -> Formula:
+        """Return what `residual` returns, for a shape of `rules` and its times."""
+        residual = self.rules.residual(shape, past)
+        if residual is not None:
+            return formula_from_residual(self._graph, self.rules.progression, residual)
+        constants = {Verdict.FALSE: FALSE, Verdict.TRUE: TRUE}
+        return constants.get(shape.verdict, self.formula)
+
+    @property
+    def memory(self) -> "Memory":
+        """How much is kept at present."""
+        cells = sum(map(len, self._tables.values()))
+        return Memory(len(self._residuals), self.rules.size, self.limit, cells)
 
     def collect_when_full(self) -> None:
         """Forget residuals that no holder has, if there are more than `limit`."""
@@ -170,8 +218,7 @@ class ProgressionTable:
         new = np.zeros(len(kept), dtype=np.int64)
         used = np.concatenate([_NO_TABLE, *(holder.residuals for holder in holders)])
         for number in np.unique(used).tolist():
-            residual = kept[number]
-            new[number] = number if residual is None else self._number_of(residual)
+            new[number] = number if number <= _INITIAL else self._number_of(*kept[number])
         for holder in holders:
             holder.residuals = new[holder.residuals]
         self._in_use = len(self._residuals)
@@ -187,30 +234,20 @@ class ProgressionTable:
 
     def successor(self, number: int, bits: int, elapsed: Duration) -> int:
         """Return what `progress` returns, for one object; bit i of *bits* is atom number i."""
-        key = (number, bits, elapsed)
-        following = self._memory.get(key)
-        if following is None:
-            if len(self._memory) >= _MOST_REMEMBERED:
-                self._memory.clear()
-            following = self._memory[key] = self._compute(number, bits, elapsed)
-        return following
-
-    def _compute(self, number: int, bits: int, elapsed: int) -> int:
-        """Work out what is left of one residual after one state."""
-        if number in {_FALSE, _TRUE}:
+        if number < _INITIAL:
             return number
-        residual = self._residuals[number]
-        if residual is None:
-            return self._number_of(self._progression.first(bits))
-        return self._number_of(self._progression.next(residual, bits, Duration(elapsed)))
+        shape, past = self._residuals[number]
+        now = past[0] + elapsed
+        following, times = self.rules.follow(shape, past, bits, now)
+        return self._number_of(following, times)
 
-    def _number_of(self, residual: Residual) -> int:
-        verdict = self._progression.verdict(residual)
-        if verdict is not Verdict.UNDECIDED:
-            return _TRUE if verdict is Verdict.TRUE else _FALSE
-        number = self._number.setdefault(residual, len(self._residuals))
+    def _number_of(self, shape: Shape, times: Times) -> int:
+        if shape.verdict is not Verdict.UNDECIDED:
+            return _TRUE if shape.verdict is Verdict.TRUE else _FALSE
+        past = _closed_up(times, shape.reach)
+        number = self._number.setdefault((shape.number, past), len(self._residuals))
         if number == len(self._residuals):
-            self._residuals.append(residual)
+            self._residuals.append((shape, past))
         return number
 
     def _table(self, elapsed: int) -> npt.NDArray[np.int64]:
@@ -230,7 +267,7 @@ class ProgressionTable:
         table = self._tables[elapsed]
         for key in keys.tolist():
             number, bits = divmod(key, self._width)
-            table[key] = self._compute(number, bits, elapsed)
+            table[key] = self.successor(number, bits, Duration(elapsed))
         return table
 
     def _progress_sparsely(
@@ -248,3 +285,15 @@ class ProgressionTable:
         bits = [int.from_bytes(column.tobytes(), "little") for column in pairs[8:].T]
         following = [self.successor(k, b, elapsed) for k, b in zip(numbers, bits, strict=True)]
         return np.array(following, dtype=np.int64)[places]
+
+
+def _closed_up(times: Times, reach: int) -> Times:
+    """Return *times*, in descending order, relative to the first, with gaps of at most *reach*.
+
+    Times are only ever compared with one another and durations up to *reach*, so that a longer
+    gap is as good as any longer one.
+    """
+    past = [0]
+    for later, earlier in pairwise(times):
+        past.append(past[-1] - min(later - earlier, reach))
+    return tuple(past)

@@ -12,11 +12,12 @@ would say:
 - for each node below, the past instants at which it is known to be true or known to be false,
   as far as an undecided operator above still asks for them.
 
-All instants are relative to the last state. Residuals that say the same are mostly equal, so
-that there are few of them; in particular they do not grow with the number of states.
+All instants are relative to the last state. Instants are only ever compared with one another
+and moved by durations of the formula, so that what is done here can be watched and done again
+for other times (`dyknow.mtl.rules`).
 """
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 
 from dyknow.mtl.graph import (
@@ -46,7 +47,6 @@ from dyknow.mtl.instants import (
     without,
 )
 from dyknow.mtl.syntax import TimeModel, Verdict
-from dyknow.time import Duration
 
 __all__ = ["Knowledge", "Obligation", "Progression", "Residual"]
 
@@ -63,12 +63,6 @@ class Knowledge:
     def of(self, literal: Literal) -> "Knowledge":
         """Return the same for a literal of the node."""
         return Knowledge(self.false, self.true) if literal & 1 else self
-
-    def moved(self, by: int) -> "Knowledge":
-        """Return the same relative to an instant that lies *by* later."""
-        if not self.true and not self.false:
-            return self
-        return Knowledge(shift(self.true, -by), shift(self.false, -by))
 
     def joined(self, true: Instants, false: Instants) -> "Knowledge":
         """Return what is known here or there."""
@@ -116,19 +110,36 @@ class Residual:
     knowledge: tuple[Knowledge, ...]
     held: tuple[bool, ...]
 
+    def mapped(self, new: Callable[[int], int]) -> "Residual":
+        """Return the same with each finite bound of a set of instants replaced by another."""
+        return Residual(
+            tuple(
+                o
+                if isinstance(o, Verdict)
+                else Obligation(_mapped(o.witnesses, new), _mapped_bound(o.left_from, new))
+                for o in self.obligations
+            ),
+            tuple(
+                Knowledge(_mapped(k.true, new), _mapped(k.false, new)) if k.true or k.false else k
+                for k in self.knowledge
+            ),
+            self.held,
+        )
+
 
 class Progression:
     """How the residuals of one formula follow from one another.
 
     Attributes:
         owed: The operators and state formulas at the top level, as positive literals.
+        longest: The sum of all finite durations in the formula.
     """
 
     def __init__(self, graph: FormulaGraph) -> None:
         self._graph = graph
         self._nodes = list(enumerate(graph.nodes))
         self.owed = tuple(dict.fromkeys(self._top_level(graph.root)))
-        self._longest = sum(2 + _finite_bounds(node) for node in graph.nodes)
+        self.longest = sum(2 + _finite_bounds(node) for node in graph.nodes)
         self._place = {literal: at for at, literal in enumerate(self.owed)}
         between_states = graph.plain_values(0, sampled=False)
         self._between = between_states if graph.time_model is TimeModel.POINTS else None
@@ -157,21 +168,17 @@ class Progression:
             return Obligation(between(node.least, end), 0)
         return Verdict.TRUE if held[number] else Verdict.FALSE
 
-    def next(self, residual: Residual, bits: int, elapsed: Duration) -> Residual:
+    def next(self, residual: Residual, bits: int, last: int) -> Residual:
         """Return what is left after one more state.
 
         Args:
-            residual: What was left after the state before.
+            residual: What was left after the state before; all its instants are relative to
+                the new state.
             bits: The truth of atom number i in bit i.
-            elapsed: The time since the state before, at least one nanosecond.
+            last: The instant of the state before, relative to the new one: below 0.
         """
-        moved = Residual(
-            tuple(_moved(obligation, elapsed) for obligation in residual.obligations),
-            tuple(known.moved(elapsed) for known in residual.knowledge),
-            residual.held,
-        )
         held = self._graph.plain_values(bits)
-        return self._looked_at(moved, held, between(1 - elapsed, 0))
+        return self._looked_at(residual, held, between(last + 1, 0))
 
     def verdict(self, residual: Residual) -> Verdict:
         """Return what is known about the whole formula."""
@@ -195,7 +202,7 @@ class Progression:
             self._without_redundant(literal >> 1, obligation, known)
             for literal, obligation in zip(self.owed, obligations, strict=True)
         )
-        return self._closed_up(self._remembered(obligations, known, held))
+        return self._remembered(obligations, known, held)
 
     def _learnt(self, moved: Residual, held: list[bool], interval: Instants) -> list[Knowledge]:
         """Return what is known about each node, from those without parts upwards."""
@@ -298,29 +305,6 @@ class Progression:
             return literal
         return self.undecided_part(parts[0], instants, known) ^ (literal & 1)
 
-    def _closed_up(self, residual: Residual) -> Residual:
-        """Shorten the gaps between remembered instants that are too long to matter.
-
-        Instants are only ever compared after durations of the formula have been added to them,
-        so that a gap longer than all of these together is as good as any longer one.
-        """
-        bounds = {bound for known in residual.knowledge for bound in (*known.true, *known.false)}
-        for obligation in residual.obligations:
-            if isinstance(obligation, Obligation):
-                bounds.update((*obligation.witnesses, obligation.left_from))
-        past = sorted((b for b in bounds if PAST < b < 0), reverse=True)
-        if not past or past[-1] > -self._longest:
-            return residual
-        new, nearer = {0: 0}, 0
-        for bound in past:
-            new[bound] = new[nearer] - min(nearer - bound, self._longest)
-            nearer = bound
-        return Residual(
-            tuple(_renamed_anchor(obligation, new) for obligation in residual.obligations),
-            tuple(_renamed_knowledge(known, new) for known in residual.knowledge),
-            residual.held,
-        )
-
     def _remembered(
         self, obligations: tuple[_ObligationState, ...], known: list[Knowledge], held: list[bool]
     ) -> Residual:
@@ -361,27 +345,12 @@ def _finite_bounds(node: GraphNode) -> int:
     return node.least if node.most == FUTURE else node.most
 
 
-def _renamed(instants: Instants, new: Mapping[int, int]) -> Instants:
-    return tuple(new.get(bound, bound) for bound in instants)
+def _mapped(instants: Instants, new: Callable[[int], int]) -> Instants:
+    return tuple([_mapped_bound(bound, new) for bound in instants])
 
 
-def _renamed_anchor(obligation: _ObligationState, new: Mapping[int, int]) -> _ObligationState:
-    if isinstance(obligation, Verdict):
-        return obligation
-    left_from = new.get(obligation.left_from, obligation.left_from)
-    return Obligation(_renamed(obligation.witnesses, new), left_from)
-
-
-def _renamed_knowledge(known: Knowledge, new: Mapping[int, int]) -> Knowledge:
-    if not known.true and not known.false:
-        return known
-    return Knowledge(_renamed(known.true, new), _renamed(known.false, new))
-
-
-def _moved(obligation: _ObligationState, by: int) -> _ObligationState:
-    if isinstance(obligation, Verdict):
-        return obligation
-    return Obligation(shift(obligation.witnesses, -by), obligation.left_from - by)
+def _mapped_bound(bound: int, new: Callable[[int], int]) -> int:
+    return bound if bound in (PAST, FUTURE) else new(bound)
 
 
 def _next(instant: int) -> int:

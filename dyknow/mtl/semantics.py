@@ -40,15 +40,16 @@ def evaluate(formula: Formula, trace: Trace, time_model: TimeModel = TimeModel.H
     """
     if not trace:
         return Verdict.UNDECIDED
-    return _Meaning(trace, time_model).at(formula, trace[0][0])
+    return _Meaning(trace, time_model).after(len(trace), formula)
 
 
 def deciding_state(
     formula: Formula, trace: Trace, time_model: TimeModel = TimeModel.HOLD
 ) -> tuple[Verdict, int | None]:
     """Return the verdict and the index of the first state that decides it, if any does."""
+    meaning = _Meaning(trace, time_model)
     for index in range(len(trace)):
-        verdict = evaluate(formula, trace[: index + 1], time_model)
+        verdict = meaning.after(index + 1, formula)
         if verdict is not Verdict.UNDECIDED:
             return verdict, index
     return Verdict.UNDECIDED, None
@@ -60,7 +61,13 @@ class _Meaning:
     def __init__(self, trace: Trace, time_model: TimeModel) -> None:
         self._trace = trace
         self._time_model = time_model
-        self._end = trace[-1][0]
+        self._known = trace
+        self._columns: dict[Atom, AtomColumns] = {}
+
+    def after(self, count: int, formula: Formula) -> Verdict:
+        """Return the verdict on *formula* when the first *count* states are known."""
+        self._known = self._trace[:count]
+        return self.at(formula, self._trace[0][0])
 
     def at(self, formula: Formula, now: int) -> Verdict:  # noqa: C901, PLR0911, PLR0912
         """Return the verdict on *formula* at a time-point of the trace."""
@@ -89,8 +96,9 @@ class _Meaning:
                 raise ValueError("expected a formula without quantifiers: use expand first")
 
     def _atom(self, atom: Atom, now: int) -> Verdict:
-        state = next(state for time, state in reversed(self._trace) if time <= now)
-        return Verdict.TRUE if AtomColumns((atom,)).of_state(state) else Verdict.FALSE
+        columns = self._columns.setdefault(atom, AtomColumns((atom,)))
+        state = next(state for time, state in reversed(self._known) if time <= now)
+        return Verdict.TRUE if columns.of_state(state) else Verdict.FALSE
 
     def _over(self, within: Interval, body: Formula, now: int) -> list[Verdict]:
         """Return the verdicts on *body* in the known part of the interval, and in the rest."""
@@ -109,12 +117,13 @@ class _Meaning:
         """Return the time-points from *first* up to and including *last*."""
         if self._time_model is TimeModel.HOLD:
             return range(first, last + 1)
-        return [time for time, _ in self._trace if first <= time <= last]
+        return [time for time, _ in self._known if first <= time <= last]
 
     def _last(self, within: Interval, now: int) -> int:
-        return self._end if within.end is None else min(self._end, now + within.end)
+        end = self._known[-1][0]
+        return end if within.end is None else min(end, now + within.end)
 
     def _unknown(self, within: Interval, now: int) -> list[Verdict]:
         """Return `UNDECIDED` if a part of the interval has not come yet."""
-        known = within.end is not None and now + within.end <= self._end
+        known = within.end is not None and now + within.end <= self._known[-1][0]
         return [] if known else [Verdict.UNDECIDED]
