@@ -2,7 +2,8 @@
 
 Read in this order: `syntax`, `grammar.lark`, `parser`, `printer`, `check`, `quantifiers`,
 `symbols`, `semantics`, `truth`, `columns`, `instants`, `graph`, `residuals`, `moments`,
-`decisions`, `rules`, `wording`, `progression`, `monitors`, `groups`.
+`decisions`, `rules`, `wording`, `progression`, `monitors`, `groups`,
+`operators`, `execution`.
 """
 
 from dyknow.mtl.columns import evaluate_atoms

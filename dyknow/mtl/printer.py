@@ -17,8 +17,8 @@ _LOOSEST, _IMPLICATION, _OR, _AND, _UNTIL, _PREFIX, _SUM, _PRODUCT, _MINUS, _TIG
 _PRINTED_IN_FULL = 1e15
 
 
-def text_from_formula(node: Node) -> str:
-    """Write a formula or a term in the form that `parse_formula` reads."""
+def text_from_formula(node: Node | syntax.Name) -> str:
+    """Write a formula, a term or an argument in the form that `parse_formula` reads."""
     return _text(node)
 
 
