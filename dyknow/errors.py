@@ -206,6 +206,8 @@ class FeatureError(DyKnowError):
     def __init__(self, feature: str, expected: str, found: str) -> None:
         super().__init__(f"feature '{feature}': expected {expected}, found {found}")
         self.feature = feature
+        self.expected = expected
+        self.found = found
 
 
 class StateOrderError(DyKnowError, ValueError):

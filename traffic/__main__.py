@@ -14,6 +14,7 @@ from traffic.commands import (
     check,
     inspect,
     judge,
+    monitor,
     network,
     recover,
     replay,
@@ -38,6 +39,7 @@ app.command("recover")(recover.recover)
 app.command("report")(report.report)
 app.command("inspect")(inspect.inspect)
 app.command("judge")(judge.judge)
+app.command("monitor")(monitor.monitor)
 app.command("check")(check.check)
 app.add_typer(network.app, name="network")
 app.command("scenarios")(scenarios.scenarios)

@@ -11,6 +11,7 @@ __all__ = [
     "ResultError",
     "ScenarioError",
     "SimulatorError",
+    "StatesError",
     "TrafficError",
 ]
 
@@ -80,6 +81,18 @@ class ReplayError(TrafficError):
 
 class ResultError(TrafficError):
     """A folder of results cannot be written or read."""
+
+
+class StatesError(TrafficError):
+    """Recorded states cannot be read, or a state is not as it should be.
+
+    Attributes:
+        place: Where, as `file:line:column`, as far as that is known.
+    """
+
+    def __init__(self, place: str, expected: str, found: str) -> None:
+        super().__init__(f"{place}: expected {expected}, found {found}")
+        self.place = place
 
 
 class RequestError(TrafficError):
