@@ -73,6 +73,7 @@ class Assembly:
 
     Attributes:
         kernel: Runs them.
+        implementations: What the symbols stand for in what is built from now on.
         known: The declarations of all generators that there can be now, by label.
         lasting: The labels of those that are declared outside of blocks.
         parts: What has been built, by label, in the order of building.
@@ -81,11 +82,11 @@ class Assembly:
 
     def __init__(self, kernel: Kernel, implementations: Implementations) -> None:
         self.kernel = kernel
+        self.implementations = implementations
         self.known: dict[str, GeneratorDeclaration] = {}
         self.lasting: set[str] = set()
         self.parts: dict[str, Part] = {}
         self.journal = NetworkChange()
-        self._implementations = implementations
 
     def missing(self, terms: Iterable[StreamTerm]) -> list[str]:
         """Return the labels without which streams cannot be built."""
@@ -97,7 +98,7 @@ class Assembly:
         Raises:
             SpecificationErrors: Something cannot be made.
         """
-        maker = Maker(self._implementations)
+        maker = Maker(self.implementations)
         needed = list(self._needed(terms))
         for part in needed:
             self._make(part, maker)

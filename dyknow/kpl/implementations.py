@@ -61,6 +61,11 @@ class Implementations:
     units: Mapping[str, Callable[..., ComputationalUnit]] = field(default_factory=dict)
     link: LinkFactory | None = None
 
+    def joined(self, others: "Implementations") -> "Implementations":
+        """Return what is here and in *others*, which count where a symbol is in both."""
+        sources, units = {**self.sources, **others.sources}, {**self.units, **others.units}
+        return Implementations(sources, units, others.link or self.link)
+
 
 class Maker:
     """Makes sources and units, and collects what is at fault.

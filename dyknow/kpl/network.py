@@ -51,7 +51,6 @@ class Network:
     ) -> None:
         """Make an empty network; *values* are for parameters, in place of their defaults."""
         self.kernel = Kernel()
-        self._implementations = implementations
         self._values = dict(values or {})
         self._specification = Specification(())
         self._wanted: set[str] = set()
@@ -72,10 +71,14 @@ class Network:
         return self._specification
 
     @property
+    def declarations(self) -> Declarations:
+        """What is declared now, by name, with the values that the parameters have."""
+        return Declarations(check(self._specification, self._values))
+
+    @property
     def description(self) -> NetworkDescription:
         """What has been built and not been removed, as plain data."""
-        bound = check(self._specification, self._values)
-        return describe(self._assembly, self._outputs, Declarations(bound))
+        return describe(self._assembly, self._outputs, self.declarations)
 
     @property
     def waiting(self) -> Mapping[str, list[str]]:
@@ -97,6 +100,10 @@ class Network:
         """
         self._change_receivers.append(receive)
         return lambda: self._change_receivers.remove(receive)
+
+    def provide(self, implementations: Implementations) -> None:
+        """Let more symbols stand for something; what has been built already stays as it is."""
+        self._assembly.implementations = self._assembly.implementations.joined(implementations)
 
     def add(
         self,
@@ -120,7 +127,7 @@ class Network:
             added = parse_specification(added, name)
         old = self._specification.declarations
         specification = Specification((*old, *added.declarations))
-        bound = check(specification, self._values, self._implementations.units)
+        bound = check(specification, self._values, self._assembly.implementations.units)
         declared = Declarations(bound)
         new = _outputs_in(Specification(bound.declarations[len(old) :]))
         wanted = list(new) if outputs is None else list(outputs)
@@ -170,7 +177,7 @@ class Network:
         """
         given = parse_policy(constraints) if isinstance(constraints, str) else tuple(constraints)
         specification = replace_constraints(self._specification, target, given)
-        bound = check(specification, self._values, self._implementations.units)
+        bound = check(specification, self._values, self._assembly.implementations.units)
         self._redeclare(bound)
         self._specification = specification
 

@@ -17,9 +17,10 @@ from dyknow.errors import (
     SpecificationErrors,
 )
 from dyknow.kpl.description import NetworkChange
+from dyknow.kpl.implementations import Implementations
 from dyknow.kpl.parser import parse_specification
 from dyknow.kpl.printer import text_from
-from tests.support.networks import Collector, network_of, samples_at
+from tests.support.networks import Collector, Distance, Echo, network_of, samples_at
 from tests.support.streams import ms, text
 
 TEXT = """
@@ -59,6 +60,17 @@ def test_more_can_be_declared_while_the_network_runs():
     assert text_from(network.specification).endswith(
         "strmgen more = Echo(distance)\nstream more = more\n"
     )
+
+
+def test_more_symbols_can_come_to_stand_for_something():
+    """What is provided counts from then on, for what is declared from then on."""
+    network = _network()
+    network.provide(Implementations(units={"Again": Echo}))
+    network.add("compunit n Again(n) strmgen again = Again(b) stream again = again")
+    network.provide(Implementations(units={"Again": Distance}))
+
+    assert Collector(network).run()["again"] == "0:1 20:2 40:3"
+    assert set(network.declarations.generators) == {"a", "b", "echo[a]", "distance", "again"}
 
 
 def test_a_change_asked_for_within_an_instant_is_made_at_its_end():
