@@ -1,71 +1,32 @@
 """A formula as a graph in which equal subformulas are one node.
 
-There are four kinds of node: the constant, atoms, conjunctions, and `until`; everything else is
-said with these and negation. A *literal* is a node or its negation, written as the integer
-`2 * node + 1` if negated and `2 * node` if not. Literals are simplified as they are made:
-constants disappear, `f and not f` is false, and `eventually [a, b] eventually [c, d] f` is
-`eventually [a + c, b + d] f`.
+Literals (`dyknow.mtl.nodes`) are simplified as they are made: constants disappear, `eventually
+[a, b] eventually [c, d] f` is `eventually [a + c, b + d] f`, and in conjunctions, of not too many
+parts, what others entail is left out and what others exclude is false (`dyknow.mtl.entailment`).
 
 The graph is always about the time model `hold`. In the model `points` there is one more
 proposition, *sampled*, which holds at the time-points of the states alone: operators speak of
 `sampled and f` where they want a witness and of `sampled -> f` where they want all instants.
 """
 
-from dataclasses import dataclass
-
 from dyknow.mtl import syntax
+from dyknow.mtl.entailment import Entailment
 from dyknow.mtl.instants import FUTURE
+from dyknow.mtl.nodes import (
+    FALSITY,
+    SAMPLED,
+    TRUTH,
+    All,
+    GraphNode,
+    Literal,
+    Proposition,
+    UntilNode,
+)
 from dyknow.mtl.syntax import Atom, Formula, Interval, TimeModel
 
-__all__ = [
-    "FALSITY",
-    "SAMPLED",
-    "TRUTH",
-    "All",
-    "FormulaGraph",
-    "GraphNode",
-    "Literal",
-    "Proposition",
-    "UntilNode",
-    "conjunction",
-    "disjunction",
-    "negation",
-]
+__all__ = ["FormulaGraph", "conjunction", "disjunction", "negation"]
 
-Literal = int
-TRUTH: Literal = 0
-FALSITY: Literal = 1
-
-
-@dataclass(frozen=True, slots=True)
-class Proposition:
-    """An atom, by its number, or `SAMPLED`."""
-
-    atom: int
-
-
-SAMPLED = -1
-"""In place of the number of an atom: whether the instant is the time-point of a state."""
-
-
-@dataclass(frozen=True, slots=True)
-class All:
-    """The conjunction of two or more literals; of none, it is true."""
-
-    literals: tuple[Literal, ...]
-
-
-@dataclass(frozen=True, slots=True)
-class UntilNode:
-    """`left until [least, most] right`; `most` may be `FUTURE`."""
-
-    least: int
-    most: int
-    left: Literal
-    right: Literal
-
-
-GraphNode = Proposition | All | UntilNode
+_MOST_COMPARED = 64
 
 
 class FormulaGraph:
@@ -83,6 +44,7 @@ class FormulaGraph:
     def __init__(self, formula: Formula, time_model: TimeModel = TimeModel.HOLD) -> None:
         self.time_model = time_model
         self.nodes: list[GraphNode] = []
+        self._entailment = Entailment(self.nodes)
         self.temporal: list[bool] = []
         self.formulas: list[Formula] = []
         self._number: dict[GraphNode, int] = {}
@@ -201,9 +163,27 @@ class FormulaGraph:
             flat.update(dict.fromkeys(inner))
         if any(literal ^ 1 in flat for literal in flat) or FALSITY in flat:
             return FALSITY
-        if len(flat) <= 1:
-            return next(iter(flat), TRUTH)
-        return self._make(All(tuple(sorted(flat))), formula)
+        kept = [literal for literal in flat if literal != TRUTH]
+        if len(kept) <= _MOST_COMPARED:
+            kept = self._independent(kept)
+            if FALSITY in kept:
+                return FALSITY
+        if len(kept) <= 1:
+            return kept[0] if kept else TRUTH
+        if len(kept) < len(flat):
+            formula = conjunction([self.formula(literal) for literal in kept])
+        return self._make(All(tuple(sorted(kept))), formula)
+
+    def _independent(self, literals: list[Literal]) -> list[Literal]:
+        """Return what is left of a conjunction when no literal follows from the others."""
+        kept = literals
+        for literal in literals:
+            others = [other for other in kept if other != literal]
+            if self._entailment.follows(others, literal ^ 1):
+                return [FALSITY]
+            if self._entailment.follows(others, literal):
+                kept = others
+        return kept
 
     def _until(self, within: Interval, left: Literal, right: Literal, formula: Formula) -> Literal:
         least, most = int(within.start), FUTURE if within.end is None else int(within.end)

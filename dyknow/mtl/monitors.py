@@ -12,8 +12,9 @@ import numpy.typing as npt
 
 from dyknow.errors import StateOrderError
 from dyknow.mtl.decisions import Times
+from dyknow.mtl.products import taken_apart
 from dyknow.mtl.progression import ProgressionTable, Residuals, Truths, Verdicts
-from dyknow.mtl.rules import NEVER
+from dyknow.mtl.rules import NEVER, Shape
 from dyknow.mtl.syntax import Formula, TimeModel, Verdict
 from dyknow.time import Duration, TimePoint
 
@@ -100,7 +101,9 @@ class Monitor:
         if not isinstance(formula, ProgressionTable):
             formula = ProgressionTable(formula, time_model=time_model)
         self.table: ProgressionTable = formula
-        self._shape = formula.rules.initial
+        self._product = taken_apart(formula)
+        whole = formula.rules.initial
+        self._shape: Shape = whole if self._product is None else self._product.initial
         self._past: Times = (NEVER,)
 
     def step(self, now: TimePoint, state: Mapping[str, Any]) -> Verdict:
@@ -137,6 +140,8 @@ class Monitor:
     @property
     def residual(self) -> Formula:
         """What must hold from now on."""
+        if self._product is not None:
+            return self._product.formula_left(self._shape)
         return self.table.formula_left(self._shape, self._past)
 
 

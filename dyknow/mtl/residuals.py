@@ -20,14 +20,7 @@ for other times (`dyknow.mtl.rules`).
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 
-from dyknow.mtl.graph import (
-    TRUTH,
-    All,
-    FormulaGraph,
-    GraphNode,
-    Literal,
-    UntilNode,
-)
+from dyknow.mtl.graph import FormulaGraph
 from dyknow.mtl.instants import (
     EMPTY,
     FUTURE,
@@ -46,6 +39,7 @@ from dyknow.mtl.instants import (
     until,
     without,
 )
+from dyknow.mtl.nodes import TRUTH, All, GraphNode, Literal, UntilNode
 from dyknow.mtl.syntax import TimeModel, Verdict
 
 __all__ = ["Knowledge", "Obligation", "Progression", "Residual"]

@@ -5,8 +5,8 @@ domains. The place of a node in its text takes no part in comparison.
 """
 
 import math
-from collections.abc import Iterator
-from dataclasses import dataclass, field
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, field, replace
 from enum import IntEnum, StrEnum
 
 from dyknow.source_text import MADE_IN_PYTHON, Span
@@ -43,7 +43,9 @@ __all__ = [
     "Until",
     "Verdict",
     "descendants",
+    "operands",
     "parts",
+    "with_operands",
 ]
 
 
@@ -286,6 +288,37 @@ def parts(node: Node) -> tuple[Node, ...]:
             return (body,)
         case Truth() | Number() | Text() | Feature():
             return ()
+
+
+def operands(formula: Formula) -> tuple[Formula, ...]:
+    """Return the formulas that *formula* is made of, in reading order; atoms have none."""
+    match formula:
+        case Conjunction(bodies) | Disjunction(bodies):
+            return bodies
+        case Implication(left, right) | Equivalence(left, right) | Until(_, left, right):
+            return (left, right)
+        case (
+            Negation(body) | Always(_, body) | Eventually(_, body)
+            | ForAll(_, _, body) | Exists(_, _, body)
+        ):  # fmt: skip
+            return (body,)
+        case Truth() | Feature() | Comparison():
+            return ()
+
+
+def with_operands(formula: Formula, new: Sequence[Formula]) -> Formula:
+    """Return *formula* with other operands, as many as it has."""
+    match formula:
+        case Conjunction() | Disjunction():
+            return replace(formula, bodies=tuple(new))
+        case Implication() | Equivalence() | Until():
+            left, right = new
+            return replace(formula, left=left, right=right)
+        case Negation() | Always() | Eventually() | ForAll() | Exists():
+            (body,) = new
+            return replace(formula, body=body)
+        case Truth() | Feature() | Comparison():
+            return formula
 
 
 def descendants(node: Node) -> Iterator[tuple[Node, int]]:

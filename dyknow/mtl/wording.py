@@ -6,17 +6,9 @@ way that no formula about the future says simply, an interval reaches back befor
 """
 
 from dyknow.mtl import syntax
-from dyknow.mtl.graph import (
-    TRUTH,
-    All,
-    FormulaGraph,
-    Literal,
-    UntilNode,
-    conjunction,
-    disjunction,
-    negation,
-)
+from dyknow.mtl.graph import FormulaGraph, conjunction, disjunction, negation
 from dyknow.mtl.instants import FUTURE, pieces
+from dyknow.mtl.nodes import TRUTH, All, Literal, UntilNode
 from dyknow.mtl.residuals import Obligation, Progression, Residual
 from dyknow.mtl.syntax import Formula, Interval
 from dyknow.time import Duration
