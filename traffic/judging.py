@@ -115,7 +115,9 @@ def _judged(recording: Recording, path: Path | None, on_progress: OnProgress | N
     build = _Builder(description, specification, outputs, world_of(recording))
     network = declared_network(build, SORTS, _SAID_AGAIN)
     until = TimePoint(description.origin.scenario.duration)
-    execution = RecordedExecution(recording, until, without=(TRUTH,))
+    execution = RecordedExecution(
+        recording, until, without=(TRUTH,), is_complete=description.is_complete
+    )
     judgement = judge(network, execution, on_progress=on_progress)
     if execution.is_whole:
         return judgement

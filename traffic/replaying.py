@@ -178,6 +178,9 @@ class _Replay:
 
     def _is_recorded(self, difference: Difference) -> bool:
         """Return whether the recording has a sample where a difference is, damaged as it is."""
+        gap = self._recording.gap
+        if gap is not None and difference.time >= gap:
+            return False
         stream = self._recording.streams.get(difference.topic)
         return stream is not None and 0 < difference.number <= stream.count
 
@@ -201,9 +204,10 @@ class _Replay:
 
 
 def _end_of(recording: Recording) -> TimePoint:
-    """Return when the last sample became available."""
+    """Return when the last sample became available before anything is missing."""
     times = [stream.last for stream in recording.streams.values() if stream.last is not None]
-    return max(times, default=TimePoint(0))
+    end = max(times, default=TimePoint(0))
+    return end if recording.gap is None else recording.gap
 
 
 def _completeness(recording: Recording) -> str:

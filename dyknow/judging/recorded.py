@@ -18,8 +18,8 @@ class RecordedExecution:
     """What a recording says of the execution that it is of.
 
     Of a recording that was cut off, or that ended with an error, the last instant is left out:
-    nobody knows what else there was. What stands there for viewers alone is no part of the
-    execution.
+    nobody knows what else there was. Neither is it known what came after a gap in one that was
+    recovered. What stands there for viewers alone is no part of the execution.
 
     Attributes:
         topics: The topics of the streams whose samples are known.
@@ -31,6 +31,7 @@ class RecordedExecution:
         recording: The recording.
         until: The end of the run; by default the last time at which something was recorded.
         without: Topics that are no part of the execution.
+        is_complete: Whether the run was recorded to its end, as far as the application knows.
     """
 
     def __init__(
@@ -38,6 +39,8 @@ class RecordedExecution:
         recording: Recording,
         until: TimePoint | None = None,
         without: Collection[str] = (),
+        *,
+        is_complete: bool = True,
     ) -> None:
         self._recording = recording
         streams = recording.streams
@@ -48,7 +51,10 @@ class RecordedExecution:
         ]
         self.existing = _existing(recording.metadata.get("network"))
         last = max((streams[topic].last or 0 for topic in self.topics), default=0)
-        self.is_whole = recording.damage is None and recording.path.suffix != ".partial"
+        is_closed = recording.damage is None and recording.path.suffix != ".partial"
+        self.is_whole = is_closed and is_complete
+        if recording.gap is not None:
+            last = min(last, recording.gap)
         self.until = TimePoint(max(last, until or 0) if self.is_whole else last - 1)
 
     def contents(self, topic: str) -> Iterator[Element]:

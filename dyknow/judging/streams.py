@@ -7,6 +7,7 @@ from typing import Any
 
 from dyknow.errors import DyKnowError
 from dyknow.judging.execution import Execution
+from dyknow.recordings.errors import DamagedRecordingError, MissingCodecError
 from dyknow.streams.process import Element
 from dyknow.streams.sample import Heartbeat, Sample
 from dyknow.streams.stream import is_fluent_stream
@@ -76,9 +77,15 @@ class KnownStreams:
         return self._contents(topic).samples
 
     def fault(self, topic: str) -> str | None:
-        """Return why a stream cannot be read, and know it no more, or None."""
+        """Return why a stream cannot be what was recorded, and know it no more, or None.
+
+        Raises:
+            DamagedRecordingError, MissingCodecError: The execution itself cannot be read.
+        """
         try:
             self._contents(topic)
+        except (DamagedRecordingError, MissingCodecError):
+            raise
         except DyKnowError as error:
             self._topics -= {topic}
             return str(error)

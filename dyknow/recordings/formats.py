@@ -4,7 +4,15 @@ import json
 import zlib
 from collections.abc import Mapping
 
-__all__ = ["FORMAT", "FORMAT_RECORD", "PROFILE", "TEXTS_RECORD", "checked_texts", "sealed_texts"]
+__all__ = [
+    "FORMAT",
+    "FORMAT_RECORD",
+    "LOSSES_RECORD",
+    "PROFILE",
+    "TEXTS_RECORD",
+    "checked_texts",
+    "sealed_texts",
+]
 
 PROFILE = "dyknow"
 """What the header of a recording says it is."""
@@ -17,6 +25,9 @@ FORMAT_RECORD = "dyknow"
 
 TEXTS_RECORD = "recording"
 """The name of the metadata records with texts about the whole recording."""
+
+LOSSES_RECORD = "recovered"
+"""The name of the metadata record of a recording that was recovered, without what was lost."""
 
 _CHECKSUM = "dyknow.crc32"
 

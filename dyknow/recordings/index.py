@@ -2,6 +2,7 @@
 
 import zlib
 from collections import Counter
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from io import BytesIO
 from pathlib import Path
@@ -31,10 +32,23 @@ from dyknow.recordings.container import (
     stream_of,
 )
 from dyknow.recordings.errors import DamagedRecordingError
-from dyknow.recordings.formats import FORMAT_RECORD, TEXTS_RECORD, checked_texts
+from dyknow.recordings.formats import (
+    FORMAT_RECORD,
+    LOSSES_RECORD,
+    TEXTS_RECORD,
+    checked_texts,
+    sealed_texts,
+)
 from dyknow.time import TimePoint, text_from_duration
 
-__all__ = ["ChunkEntry", "Damage", "Index", "index_from_summary", "index_of_whole_chunks"]
+__all__ = [
+    "ChunkEntry",
+    "Damage",
+    "Index",
+    "Losses",
+    "index_from_summary",
+    "index_of_whole_chunks",
+]
 
 _FOOTER_SIZE = 9 + 20
 _SUMMED_OF_FOOTER = 9 + 16
@@ -92,6 +106,41 @@ class Damage:
         )
 
 
+@dataclass(frozen=True, slots=True)
+class Losses:
+    """What is missing of a recording that was made of a damaged one.
+
+    Attributes:
+        path: The file.
+        what: What was lost, in words.
+        until: Before this available time nothing is missing; None if only the end is.
+    """
+
+    path: Path
+    what: str
+    until: TimePoint | None
+
+    def __str__(self) -> str:
+        whole = "" if self.until is None else f"; whole up to {text_from_duration(self.until)} ms"
+        return f"{self.path}: recovered from a damaged recording: {self.what}{whole}"
+
+    def as_metadata(self) -> dict[str, str]:
+        """Return what a file says of it."""
+        until = {} if self.until is None else {"until": str(self.until)}
+        return sealed_texts({"what": self.what, **until})
+
+    @classmethod
+    def from_metadata(cls, path: Path, metadata: Mapping[str, str]) -> "Losses":
+        """Return what the file at *path* says.
+
+        Raises:
+            ValueError, KeyError: It is not what was written.
+        """
+        said = checked_texts(metadata)
+        until = TimePoint(int(said["until"])) if "until" in said else None
+        return cls(path, said["what"], until)
+
+
 @dataclass(slots=True)
 class Index:
     """What is where in a file.
@@ -103,6 +152,7 @@ class Index:
         chunks: In the order of the file.
         texts: The texts about the whole recording.
         format: The format of the recording; empty if the file does not say.
+        losses: What is missing, of a recording that was recovered.
     """
 
     schemas: dict[int, Schema] = field(default_factory=dict)
@@ -111,6 +161,7 @@ class Index:
     chunks: list[ChunkEntry] = field(default_factory=list)
     texts: dict[str, str] = field(default_factory=dict)
     format: str = ""
+    losses: Losses | None = None
 
     def add_metadata(
         self, path: Path, file: BinaryIO, entry: RecordEntry, name: str | None = None
@@ -128,17 +179,11 @@ class Index:
                 self.format = checked_texts(record.metadata)["format"]
             elif record.name == TEXTS_RECORD:
                 self.texts.update(checked_texts(record.metadata))
+            elif record.name == LOSSES_RECORD:
+                self.losses = Losses.from_metadata(path, record.metadata)
         except (*_MALFORMED, KeyError) as fault:
             where = f"the metadata at byte {entry.start}"
             raise DamagedRecordingError(path, where, str(fault)) from fault
-
-    def _add_texts(self, record: Metadata, name: str) -> None:
-        if record.name != name:
-            raise ValueError("its name is wrong")
-        if name == FORMAT_RECORD:
-            self.format = checked_texts(record.metadata)["format"]
-        elif name == TEXTS_RECORD:
-            self.texts.update(checked_texts(record.metadata))
 
 
 def index_from_summary(path: Path, file: BinaryIO, size: int) -> Index | None:

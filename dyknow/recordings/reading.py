@@ -28,6 +28,7 @@ from dyknow.recordings.index import (
     ChunkEntry,
     Damage,
     Index,
+    Losses,
     index_from_summary,
     index_of_whole_chunks,
 )
@@ -45,7 +46,7 @@ class FileReader:
     Attributes:
         path: The file.
         index: What is where in it.
-        damage: What is missing, if it was not closed well.
+        damage: What is missing, if it was not closed well, or made of one that was not.
     """
 
     def __init__(self, path: Path) -> None:
@@ -110,13 +111,15 @@ class FileReader:
                 last = max(last, *self._times_in(chunk, wanted))
         return first, last
 
-    def _open(self) -> tuple[Index, Damage | None]:
+    def _open(self) -> tuple[Index, Damage | Losses | None]:
         size = self.path.stat().st_size
         self._check_header(size)
-        damage: Damage | None = None
+        damage: Damage | Losses | None
         index = index_from_summary(self.path, self._file, size)
         if index is None:
             index, damage = index_of_whole_chunks(self.path, self._file, size)
+        else:
+            damage = index.losses
         if not index.format:
             fault = "it does not say which format the recording has"
             raise DamagedRecordingError(self.path, "the beginning", fault)

@@ -16,7 +16,7 @@ from dyknow.recordings.errors import (
     MissingOriginError,
     MissingStreamError,
 )
-from dyknow.recordings.index import Damage
+from dyknow.recordings.index import Damage, Losses
 from dyknow.recordings.layout import Layout
 from dyknow.recordings.messages import (
     ReadMessage,
@@ -97,7 +97,7 @@ class Recording:
 
     Attributes:
         path: The file.
-        damage: What is missing, if the file was not closed well.
+        damage: What is missing, if the file was not closed well, or was made of one that was not.
         version: The format of the file.
         metadata: The texts about the whole recording.
     """
@@ -109,7 +109,7 @@ class Recording:
             DamagedRecordingError: A channel does not say what it is.
         """
         self.path = file.path
-        self.damage: Damage | None = file.damage
+        self.damage: Damage | Losses | None = file.damage
         self.version = file.index.format
         self.metadata: Mapping[str, str] = dict(file.index.texts)
         self._file = file
@@ -134,6 +134,11 @@ class Recording:
     def close(self) -> None:
         """Close the file."""
         self._file.close()
+
+    @property
+    def gap(self) -> TimePoint | None:
+        """Before this time nothing is missing; None if nothing is, or only the end."""
+        return self.damage.until if isinstance(self.damage, Losses) else None
 
     @property
     def streams(self) -> Mapping[str, RecordedStream]:

@@ -31,8 +31,14 @@ from dyknow.recordings.errors import (
     NotARecordingError,
     RecordingVersionError,
 )
-from dyknow.recordings.formats import FORMAT, FORMAT_RECORD, TEXTS_RECORD, sealed_texts
-from dyknow.recordings.index import Index, index_from_summary
+from dyknow.recordings.formats import (
+    FORMAT,
+    FORMAT_RECORD,
+    LOSSES_RECORD,
+    TEXTS_RECORD,
+    sealed_texts,
+)
+from dyknow.recordings.index import Index, Losses, index_from_summary
 from dyknow.recordings.messages import Reference, message_reader, times_of
 from dyknow.recordings.origins import N_ORIGINS
 from dyknow.recordings.writing import FileWriter
@@ -77,12 +83,23 @@ class RecoveryReport:
 
     def __str__(self) -> str:
         until = "" if self.until is None else f", up to {text_from_duration(self.until)} ms"
-        parts = [f"{self.out}: {self.n_messages} messages of {self.n_chunks} whole chunks{until}"]
+        messages = _amount(self.n_messages, "message")
+        begin = f"{self.out}: {messages} of {_amount(self.n_chunks, 'whole chunk')}{until}"
+        return "; ".join([begin, *self.losses])
+
+    @property
+    def losses(self) -> tuple[str, ...]:
+        """What was lost, and what else is wrong."""
+        parts = []
         if self.n_missing:
-            parts.append(f"{self.n_missing} messages are missing in between")
+            parts.append(f"{_amount(self.n_missing, 'message')} missing in between")
         if self.n_dangling:
-            parts.append(f"{self.n_dangling} samples are left out for want of their values")
-        return "; ".join([*parts, *self.faults])
+            parts.append(f"{_amount(self.n_dangling, 'sample')} left out for want of a value")
+        return (*parts, *self.faults)
+
+
+def _amount(count: int, what: str) -> str:
+    return f"{count} {what}" + ("" if count == 1 else "s")
 
 
 def recover(
@@ -123,6 +140,7 @@ class _Found:
         texts: The texts about the whole recording.
         schemas: By number, as far as the summary has them; chunks add to them.
         channels: Likewise.
+        losses: What was missing before, if the file was recovered already.
         n_chunks: How many chunks there are by the summary; None without one.
         faults: What is wrong.
     """
@@ -140,6 +158,7 @@ class _Found:
         index = self._metadata()
         self.texts = index.texts
         self.has_format = bool(index.format)
+        self.losses = index.losses
         if index.format not in {"", FORMAT}:
             raise RecordingVersionError(path, FORMAT, index.format)
 
@@ -167,7 +186,7 @@ class _Found:
 
     def _metadata(self) -> Index:
         index = Index()
-        for name in (FORMAT_RECORD, TEXTS_RECORD):
+        for name in (FORMAT_RECORD, TEXTS_RECORD, LOSSES_RECORD):
             mark = struct.pack("<I", len(name)) + name.encode()
             at = 0
             while (found := self._view.find(mark, at)) >= 0:
@@ -208,17 +227,24 @@ class _Copy:
         self._n_chunks = self._n_messages = self._n_missing = self._n_dangling = 0
         self._n_unknown = 0
         self._until: TimePoint | None = None
+        self._begin_of_chunk = TimePoint(0)
+        self._whole_until: TimePoint | None = None
         writer.add_metadata(FORMAT_RECORD, sealed_texts({"format": FORMAT}))
         writer.add_metadata(TEXTS_RECORD, sealed_texts(found.texts))
 
     def add(self, contents: Contents) -> None:
         """Write the messages of a chunk."""
         self._n_chunks += 1
+        n_missing, begin_before = self._n_missing, self._begin_of_chunk
         for message in contents.messages:
             if message[1] in self._found.channels:
                 self._add(message)
             else:
                 self._n_unknown += 1
+        if contents.messages:
+            self._begin_of_chunk = TimePoint(min(message[0] for message in contents.messages))
+        if self._n_missing > n_missing and self._whole_until is None:
+            self._whole_until = begin_before  # some streams are ahead of others in a chunk
 
     def publish(self) -> None:
         """Give the recording its name."""
@@ -226,6 +252,9 @@ class _Copy:
             raise NotARecordingError(self._found.path, "nothing that is whole in one")
         for number in self._found.channels:
             self._open(number)
+        losses = self._losses()
+        if losses is not None:
+            self._writer.add_metadata(LOSSES_RECORD, losses.as_metadata())
         self._writer.publish()
 
     def discard(self) -> None:
@@ -249,6 +278,15 @@ class _Copy:
             until=self._until,
             faults=tuple(faults),
         )
+
+    def _losses(self) -> Losses | None:
+        """Return what is missing of the recording, now or before; None if nothing is."""
+        path, before = self._writer.path, self._found.losses
+        report = self.report(path)
+        if report.is_whole:
+            return before
+        what = "; ".join(report.losses) or "the last chunks are missing"
+        return Losses(path, what, self._whole_until)
 
     def _add(self, message: RawMessage) -> None:
         log_time, old, sequence, data, publish_time = message

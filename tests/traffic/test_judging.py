@@ -8,10 +8,13 @@ from typing import Any
 
 import numpy as np
 import pytest
+from mcap.reader import make_reader
 from typer.testing import CliRunner
 
 from dyknow.judging.judgement import Basis
+from dyknow.recordings.errors import DamagedRecordingError
 from dyknow.recordings.recording import open_recording
+from dyknow.recordings.recovery import recover
 from dyknow.runtime.generators import Label
 from dyknow.runtime.subscriptions import StreamViolation
 from dyknow.streams.policy import Constraint, Violation
@@ -26,6 +29,7 @@ from traffic.__main__ import app
 from traffic.errors import RequestError
 from traffic.judging import document_from, judge_recording
 from traffic.recording.codecs import CODECS
+from traffic.replaying import ReplayRequest, replay
 from traffic.request import RunRequest
 from traffic.running import run_scenario
 from traffic.system import bundled_specification
@@ -261,6 +265,34 @@ def test_a_run_that_was_cut_off_is_judged_as_far_as_it_goes(
     assert judgement.is_satisfied
     (rest,) = judgement.unjudged
     assert rest.endswith("the recording ends there")
+
+
+def test_what_was_recovered_is_judged_before_the_gap(recording: Path, tmp_path: Path) -> None:
+    """A damaged recording is refused; what is recovered of it is correct as far as it goes."""
+    data = bytearray(recording.read_bytes())
+    with recording.open("rb") as file:
+        summary = make_reader(file).get_summary()
+    assert summary is not None
+    chunks = summary.chunk_indexes
+    chunk = chunks[len(chunks) // 2]
+    data[chunk.chunk_start_offset + chunk.chunk_length // 2] ^= 0xFF
+    damaged, hole, end = (tmp_path / f"{name}.mcap" for name in ("damaged", "hole", "end"))
+    damaged.write_bytes(data)
+    recover(damaged, hole)
+    damaged.write_bytes(data[: chunk.chunk_start_offset + 99])
+    recover(damaged, end)
+
+    damaged.write_bytes(data)
+    with pytest.raises(DamagedRecordingError, match="can be recovered"):
+        judge_recording(damaged)
+    for recovered in (hole, end):
+        judgement = judge_recording(recovered).judgement
+        assert judgement.is_satisfied, "\n".join(map(str, judgement.breaches))
+        assert judgement.unjudged[-1].endswith("the recording ends there")
+        replayed = replay(ReplayRequest(path=recovered), lambda *_: None).replay
+        assert replayed is not None
+        assert replayed.differences == []
+        assert "a part of the run is missing" in replayed.changes[-1]
 
 
 def test_files_that_cannot_be_used_are_refused(recording: Path, tmp_path: Path) -> None:

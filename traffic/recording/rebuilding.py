@@ -7,7 +7,7 @@ same order, so that every process does again what it did.
 from collections.abc import Callable, Collection, Iterator, Sequence
 from dataclasses import replace
 from functools import partial
-from itertools import chain
+from itertools import chain, takewhile
 from pathlib import Path
 from typing import Any
 
@@ -68,7 +68,8 @@ def describe(recording: Recording) -> RunDescription:
     Raises:
         ReplayError: It is not a recording of 'traffic run'.
     """
-    return RunDescription.from_metadata(recording.metadata, recording.path)
+    said = RunDescription.from_metadata(recording.metadata, recording.path)
+    return said if recording.damage is None else replace(said, is_complete=False)
 
 
 def world_of(recording: Recording) -> World:
@@ -160,10 +161,14 @@ def take(
 
 
 def simulation_of(recording: Recording) -> ReplayedSimulation | None:
-    """Return the recorded truth, for scoring alone; None if there is none."""
+    """Return the recorded truth up to where some is missing, for scoring alone; None without."""
     if TRUTH not in recording.streams:
         return None
-    return ReplayedSimulation(recording.samples(TRUTH))
+    gap = recording.gap
+    frames = recording.samples(TRUTH)
+    if gap is None:
+        return ReplayedSimulation(frames)
+    return ReplayedSimulation(takewhile(lambda frame: frame.available_time < gap, frames))
 
 
 def recorded_labels(recording: Recording) -> tuple[str, ...]:

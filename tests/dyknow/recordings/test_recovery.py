@@ -176,7 +176,13 @@ def test_damaged_chunk_is_named_and_left_out(tmp_path: Path) -> None:
     assert report.n_missing > 0
     assert not report.is_whole
     assert "is left out" in str(report)
-    assert f"{report.n_missing} messages are missing in between" in str(report)
+    assert f"{report.n_missing} messages missing in between" in str(report)
+    with open_recording(out) as recovered:
+        assert str(recovered.damage).startswith(f"{out}: recovered from a damaged recording: ")
+        assert recovered.gap is not None
+        for topic in said:
+            before = [each for each in whole[topic] if each.available_time < recovered.gap]
+            assert repr(said[topic][: len(before)]) == repr(before)
     for topic, elements in said.items():
         assert set(map(repr, elements)) < set(map(repr, whole[topic])) | {""} or topic == "y"
 
@@ -335,3 +341,20 @@ def test_killed_writer_loses_only_the_open_chunk(tmp_path: Path) -> None:
     assert [each.value for each in said_in(path)["x"]] == [  # type: ignore[union-attr]
         time / 7 for time in range(report.n_messages)
     ]
+
+
+def test_a_recovered_recording_says_that_something_is_missing(tmp_path: Path) -> None:
+    """Also after it has been recovered again; of a whole recording, nothing is missing."""
+    data = write(tmp_path / "whole.mcap", 40)
+    (tmp_path / "cut.mcap").write_bytes(data[: len(data) * 2 // 3])
+
+    recover(tmp_path / "cut.mcap", tmp_path / "once.mcap")
+    again = recover(tmp_path / "once.mcap", tmp_path / "twice.mcap")
+    copied = recover(tmp_path / "whole.mcap", tmp_path / "copy.mcap")
+
+    assert again.is_whole
+    assert copied.is_whole
+    for name, damaged in (("once", True), ("twice", True), ("copy", False)):
+        with open_recording(tmp_path / f"{name}.mcap") as recording:
+            assert (recording.damage is not None) == damaged
+            assert recording.gap is None
