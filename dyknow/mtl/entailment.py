@@ -3,9 +3,9 @@
 One relation covers what progression needs to simplify: a conjunct that the others entail says
 nothing, and conjuncts one of which entails the negation of another are never true together. It
 sees that `eventually [0, 10] p` entails `eventually [0, 20] p`, `always p` entails `p`, `p until
-q` entails `p or q`, and what follows from these. It does not look into numbers and does not tell
-cases apart: `eventually [0, 10] p or eventually [0, 10] not p` is true in any case, and this is
-not seen.
+q` entails `p or q`, and what follows from these. It does not look into numbers, and what two
+operators say about an instant to come it does not put together: that `eventually [1, 10] p or
+eventually [1, 10] not p` is true in any case is not seen.
 
 Whenever one literal entails another by these rules, its value in Kleene's logic is never above the
 other's, so that leaving out what is entailed changes no verdict.
@@ -38,16 +38,23 @@ class Entailment:
     def _follows(self, premises: Collection[Literal], conclusion: Literal, depth: int) -> bool:
         if any(self._entails(premise, conclusion, depth) for premise in premises):
             return True
-        if not depth:
-            return False
+        return depth > 0 and self._follows_together(premises, conclusion, depth - 1)
+
+    def _follows_together(
+        self, premises: Collection[Literal], conclusion: Literal, depth: int
+    ) -> bool:
+        """Return whether the parts of *conclusion* each follow, from one premise or another."""
         node, negated = self.nodes[conclusion >> 1], conclusion & 1
         match node:
             case All(literals) if negated:
-                return any(self._follows(premises, k ^ 1, depth - 1) for k in literals)
+                return any(self._follows(premises, k ^ 1, depth) for k in literals)
             case All(literals):
-                return all(self._follows(premises, k, depth - 1) for k in literals)
+                return all(self._follows(premises, k, depth) for k in literals)
             case UntilNode(0, _, _, right) if not negated:
-                return self._follows(premises, right, depth - 1)
+                return self._follows(premises, right, depth)
+            case UntilNode(least, _, left, right) if negated:
+                no_more = least > 0 or self._follows(premises, right ^ 1, depth)
+                return no_more and self._follows(premises, left ^ 1, depth)
             case _:
                 return False
 

@@ -61,13 +61,13 @@ def test_what_does_not_follow_is_not_seen(premise, conclusion):
     assert not is_seen(premise, conclusion)
 
 
-def test_cases_are_not_told_apart():
-    """That p holds soon or does not hold soon is true in any case, and not seen."""
-    graph = FormulaGraph(parse_formula("eventually [0, 10] p or eventually [0, 10] not p"))
-    assert graph.root > 1
+def test_two_operators_are_not_put_together():
+    """That p holds soon or does not hold soon is seen about now, not about later."""
+    assert FormulaGraph(parse_formula("eventually [0, 9] p or eventually [0, 9] not p")).root == 0
+    assert FormulaGraph(parse_formula("eventually [1, 9] p or eventually [1, 9] not p")).root > 1
 
 
-@settings(derandomize=True, deadline=None, max_examples=400)
+@settings(derandomize=True, deadline=None, max_examples=150)
 @given(small_formulas(size=3), small_formulas(size=3), traces(most=5))
 def test_what_follows_is_never_less_true(one, other, trace):
     """Kleene's value of a conclusion is at least that of its premise, after each state."""
