@@ -9,7 +9,7 @@ quotes, and ends on the line on which it begins.
 
 import csv
 import re
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from typing import Any
 
 from dyknow.mtl.check import BOOLEAN, NUMBER, TEXT
@@ -22,6 +22,7 @@ from traffic.monitoring.states import (
     check_order,
     match_features,
     missing_feature,
+    printed_feature,
     time_from,
 )
 
@@ -83,6 +84,10 @@ class CsvStates:
         """Return the place of the present state, or of the cell of a feature in it."""
         at = None if term is None else self._columns.get(term)
         return self._lines.place() if at is None else self._place_of(at)
+
+    def terms(self) -> Collection[str]:
+        """Return the features that there are columns of, as they are printed."""
+        return list(map(printed_feature, self._names))
 
     def _rows(self) -> Iterator[list[str]]:
         """Yield the cells of each line that is not empty."""

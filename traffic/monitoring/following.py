@@ -13,7 +13,7 @@ from traffic.errors import StatesError
 from traffic.monitoring.past import Past
 from traffic.monitoring.questions import Question, forbid_missing
 from traffic.monitoring.reasons import Reason, reasons_of
-from traffic.monitoring.states import StateReader
+from traffic.monitoring.states import StateReader, described
 
 __all__ = ["Answer", "OnStep", "Step", "document_from", "follow", "milliseconds_of"]
 
@@ -125,10 +125,7 @@ def _steps(
         try:
             verdict = step(now, values)
         except FeatureError as error:
-            raise _located(error, states) from None
-        except OverflowError:
-            found = "numbers that are too large for it"
-            raise StatesError(states.place(), "numbers to compute with", found) from None
+            raise _located(error, states, values) from None
         if verdict is not undecided:
             break
     return n_states, now
@@ -140,15 +137,22 @@ def _complete(
     """Yield the states, the first of which has every feature of the formula."""
     following = iter(states)
     for now, values in following:
-        forbid_missing(question, list(values), states.place())
+        forbid_missing(question, states.terms(), states.place())
         yield now, values
         break
     yield from following
 
 
-def _located(error: FeatureError, states: StateReader) -> StatesError:
+def _located(error: FeatureError, states: StateReader, values: Mapping[str, Any]) -> StatesError:
+    """Return a fault of a value, with its place and as it stands in the state."""
     expected = f"{error.expected} as '{error.feature}'"
-    return StatesError(states.place(error.feature), expected, error.found)
+    value = values.get(error.feature)
+    kind = _KINDS.get(type(value))
+    found = error.found if kind is None else f"{described(value)}, {kind}"
+    return StatesError(states.place(error.feature), expected, found)
+
+
+_KINDS = {bool: "a boolean", int: "a number", float: "a number", str: "a text"}
 
 
 class _Explained:

@@ -22,6 +22,7 @@ from traffic.monitoring.states import (
     described,
     match_features,
     missing_feature,
+    printed_feature,
     time_from,
 )
 
@@ -75,6 +76,10 @@ class JsonStates:
         """Return the place of the present state, or of the value of a feature in it."""
         key = None if term is None else self._keys.get(term, term)
         return self._place_of_value(key)
+
+    def terms(self) -> Collection[str]:
+        """Return the features that are there in the present state, as they are printed."""
+        return list(map(printed_feature, from_json(self._lines.line)["values"]))
 
     def _parts(self, document: Any, line: bytes) -> tuple[int, Mapping[str, Any]]:
         """Return the time, in nanoseconds, and the features that a line is about."""
@@ -145,11 +150,16 @@ class JsonStates:
         if lines.is_cut_off and what.startswith("EOF"):
             place = lines.place(lines.column(len(lines.line)))
             raise StatesError(place, "the rest of the state", "the end of the file") from None
-        lines.text()
-        place = lines.place(lines.column(at))
-        number = _NO_NUMBER.match(lines.line, at) or _NO_NUMBER.match(lines.line, max(0, at - 1))
+        text = lines.text()
+        begin = text.lstrip()
+        if begin[0] not in "{[":
+            place = lines.place(len(text) - len(begin) + 1)
+            raise StatesError(place, "an object of JSON", described(begin)) from None
+        number = _NO_NUMBER.match(lines.line, max(0, at - 1)) or _NO_NUMBER.match(lines.line, at)
         if number is not None:
-            raise StatesError(place, "a finite number", number[0].decode()) from None
+            place, found = lines.place(lines.column(number.start())), number[0].decode()
+            raise StatesError(place, "a finite number", found) from None
+        place = lines.place(lines.column(at))
         raise StatesError(place, "an object of JSON", f"a fault in it ({what})") from None
 
     def _refuse_parts(self, document: dict[str, Any]) -> NoReturn:

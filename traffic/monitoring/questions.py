@@ -1,6 +1,6 @@
 """What is asked about states: a formula, over given domains, and the features that it needs."""
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -88,20 +88,20 @@ def domains_from(texts: Sequence[str]) -> dict[str, tuple[str, ...]]:
     return domains
 
 
-def forbid_missing(question: Question, names: Sequence[str], place: str) -> None:
+def forbid_missing(question: Question, terms: Collection[str], place: str) -> None:
     """Raise every place of the formula whose feature is not among those of a state.
 
     Args:
         question: What is asked.
-        names: The features of the state.
+        terms: The features of the state, as they are printed.
         place: Where the state is.
 
     Raises:
         SpecificationErrors: There is at least one.
     """
     missing: dict[Span, SpecificationError] = {}
-    for term in question.sorts.keys() - set(names):
-        nearest = nearest_name(term, names)
+    for term in question.sorts.keys() - set(terms):
+        nearest = nearest_name(term, terms)
         hint = f"; did you mean '{nearest}'?" if nearest else ""
         span = question.places[term]
         message = f"the state at {place} has no feature '{term}'{hint}"

@@ -138,7 +138,7 @@ class _Search:
         """
         if is_new and self.do_suffice(known):
             return []
-        if len(others) == 1:
+        if len(others) <= 1:
             return others
         middle = len(others) // 2
         one, other = others[:middle], others[middle:]

@@ -21,6 +21,7 @@ __all__ = [
     "described",
     "match_features",
     "missing_feature",
+    "printed_feature",
     "text_from_time",
     "time_from",
 ]
@@ -53,6 +54,9 @@ class StateReader(Protocol):
 
     def place(self, term: str | None = None) -> str:
         """Return the place of the present state, or of a feature in it."""
+
+    def terms(self) -> Collection[str]:
+        """Return the features that are there in the present state, as they are printed."""
 
 
 def time_from(amount: object, place: Callable[[], str]) -> int:
@@ -108,6 +112,16 @@ def described(value: object) -> str:
             return _shortened(str(value))
 
 
+def printed_feature(key: str) -> str:
+    """Return a name in a state in the form in which formulas are printed."""
+    match = _FEATURE.fullmatch(key)
+    if match is None:
+        return key.strip()
+    name, round_brackets, square_brackets = match.groups()
+    inside = square_brackets if round_brackets is None else round_brackets
+    return f"{name}({', '.join(argument.strip() for argument in inside.split(','))})"
+
+
 def match_features(
     terms: Collection[str], keys: Iterable[str]
 ) -> tuple[dict[str, str], dict[str, tuple[str, str]]]:
@@ -122,7 +136,7 @@ def match_features(
     found: dict[str, str] = {}
     twice: dict[str, tuple[str, str]] = {}
     for key in keys:
-        term = _printed(key)
+        term = printed_feature(key)
         if term in found:
             twice[term] = (found[term], key)
         elif term in terms:
@@ -132,17 +146,8 @@ def match_features(
 
 def missing_feature(term: str, keys: Iterable[str]) -> str:
     """Return what is found instead of a feature: nothing, and the nearest name."""
-    nearest = nearest_name(term, map(_printed, keys))
+    nearest = nearest_name(term, map(printed_feature, keys))
     return f"none; did you mean '{nearest}'?" if nearest else "none"
-
-
-def _printed(key: str) -> str:
-    match = _FEATURE.fullmatch(key)
-    if match is None:
-        return key.strip()
-    name, round_brackets, square_brackets = match.groups()
-    inside = square_brackets if round_brackets is None else round_brackets
-    return f"{name}({', '.join(argument.strip() for argument in inside.split(','))})"
 
 
 def _shortened(text: str) -> str:
