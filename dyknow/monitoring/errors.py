@@ -29,13 +29,19 @@ class UngroundedFeatureError(SpecificationError):
 
 
 class NoFeaturesError(DyKnowError):
-    """A formula speaks of no feature, so that no stream says when it is to be evaluated."""
+    """A formula speaks of no feature, so that no stream says when it is to be evaluated.
 
-    def __init__(self, name: str) -> None:
+    Attributes:
+        left: What is left of the formulas, once all is decided that constants decide.
+    """
+
+    def __init__(self, name: str, left: Sequence[str]) -> None:
+        comes_to = " and ".join(f"'{text}'" for text in left)
         super().__init__(
-            f"'{name}' speaks of no feature, once quantifiers are written out: expected at least "
-            f"one, whose stream says when there are states"
+            f"'{name}' comes to {comes_to}: expected a feature, whose stream says when there are "
+            f"states"
         )
+        self.left = tuple(left)
 
 
 class EvaluationAlreadyExistsError(ServiceError):

@@ -6,7 +6,7 @@ a formula, finds their streams, has them made into states, evaluates the formula
 and takes away what has been made when the formula is removed.
 """
 
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Collection, Mapping
 from dataclasses import dataclass
 from itertools import count
 
@@ -212,7 +212,7 @@ class StreamReasoner:
             raise ValueError(f"expected a name that can stand in a label, found '{name}'")
 
     def _origins(
-        self, name: str, formulas: Iterable[Formula], meaning: Interpretation
+        self, name: str, formulas: Collection[Formula], meaning: Interpretation
     ) -> tuple[Origin, ...]:
         """Return where the features of formulas come from."""
         features = [
@@ -221,7 +221,7 @@ class StreamReasoner:
             if feature.arguments or meaning.constant(feature.name) is None
         ]
         if not features:
-            raise NoFeaturesError(name)
+            raise NoFeaturesError(name, [text_from_formula(each) for each in formulas])
         return origins_of(features, meaning, self.network.declarations)
 
     def _new_label(self) -> str:
