@@ -113,7 +113,6 @@ class AdaptedStream:
         "_members",
         "_noticed",
         "_older",
-        "_push",
         "_reached",
         "_receivers",
         "_ticket",
@@ -143,11 +142,10 @@ class AdaptedStream:
         self._agenda = agenda
         self._ticket: Ticket | None = None
         self._members: dict[Member, Receive] = {}
-        self._receivers = self._members.values()
+        # The values of the members, gone through for every sample: a list takes the least time.
+        self._receivers: list[Receive] = []
         self._beats: dict[Member, Beat] = {}
         self._adapter = beginning.adapter
-        # What is needed for every sample is looked up once.
-        self._push = self._adapter.push
         self._noticed = self._adapter.violations
         self._has_alarms = policy.period is not None and policy.max_delay is not None
         self._waiting: list[Element] = []
@@ -208,8 +206,12 @@ class AdaptedStream:
 
     def join(self, member: Member) -> None:
         """Hand everything from now on to *member* too."""
-        is_first = not self._members
+        is_first, is_new = not self._members, member not in self._members
         self._members[member] = member.receive
+        if is_new:
+            self._receivers.append(member.receive)
+        else:
+            self._receivers = list(self._members.values())
         self._beats.pop(member, None)
         if member.beat is not None:
             self._beats[member] = member.beat
@@ -220,6 +222,7 @@ class AdaptedStream:
     def leave(self, member: Member) -> None:
         """Hand nothing more to *member*; end with the last one."""
         del self._members[member]
+        self._receivers = list(self._members.values())
         self._beats.pop(member, None)
         if not self._members:
             self._end()
@@ -251,7 +254,7 @@ class AdaptedStream:
 
     def _receive(self, sample: Sample[Any]) -> None:
         """Take in a sample of the generator."""
-        adapted = self._push(sample)
+        adapted = self._adapter.push(sample)
         if len(adapted) == 1 and adapted[0] is sample:
             # Nearly always: the shortest way, since this is done for every sample and stream.
             if self.last is None:
@@ -294,7 +297,7 @@ class AdaptedStream:
                 self._beat(Heartbeat(element.until, time))
             else:
                 sample = Sample(element.value, element.valid_time, time)
-                self._hand_on(self._push(sample), time)
+                self._hand_on(self._adapter.push(sample), time)
         if not self._older and not self._waiting:
             self._older = None
             self._connect()

@@ -29,6 +29,17 @@ class Filter:
         violations: What has been noticed and not yet been taken: the same list at all times.
     """
 
+    __slots__ = (
+        "_end",
+        "_last",
+        "_least_step",
+        "_max_delay",
+        "_policy",
+        "_start",
+        "_wants_change",
+        "violations",
+    )
+
     def __init__(self, policy: Policy) -> None:
         self.violations: list[Violation] = []
         self._policy = policy

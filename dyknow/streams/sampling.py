@@ -42,8 +42,9 @@ class Sampler:
         "_given_up",
         "_heard",
         "_held",
+        "_is_smooth",
+        "_last",
         "_max_delay",
-        "_opens",
         "_out",
         "_policy",
         "_seen",
@@ -61,10 +62,14 @@ class Sampler:
         self._end = NEVER if policy.end is None else policy.end
         self._max_delay = NEVER if policy.max_delay is None else policy.max_delay
         self._held: list[Sample[Any]] = []
-        # The next sample must be valid between `_opens` and `_opens + _width`.
-        self._opens = NOT_BEGUN
+        # Where the last sample was handed on or given up: the next one must be valid between
+        # `_opens`, one `_step` later, and `_opens + _width`.
+        self._last = NOT_BEGUN
         self._width = 2 * policy.change.deviation
         self._given_up = self._heard = self._seen = self._gap_after = NOT_BEGUN
+        # Whether nothing is held back, nor handed on later than it arrived: one look at the
+        # sampler instead of at all its parts, for among thousands each look is a cache miss.
+        self._is_smooth = False
         self._unreported = 0
         self._take_on(policy.change.period)
 
@@ -82,13 +87,12 @@ class Sampler:
         """Take in a sample; yield it and held ones if they are next."""
         valid_time = sample.valid_time
         if (
-            0 <= valid_time - self._opens <= self._width
+            self._is_smooth
+            and 0 <= valid_time - self._last - self._step <= self._width
             and sample.available_time - valid_time <= self._max_delay
             and valid_time <= self._end
-            and not self._held
-            and sample.available_time > self._out.last
         ):
-            self._opens = valid_time + self._step
+            self._last = valid_time
             return (sample,)
         return self._push(sample)
 
@@ -111,7 +115,7 @@ class Sampler:
 
     def due(self) -> TimePoint | None:
         """Return when the next sample will be given up."""
-        if self._opens == NOT_BEGUN or self._expected > self._end:
+        if self._last == NOT_BEGUN or self._expected > self._end:
             return None
         closes = self._opens + self._width
         if closes <= self._heard:
@@ -131,14 +135,16 @@ class Sampler:
             ValueError: The policy does not allow the period.
         """
         refuse_foreign(period, self._change)
-        last, expected = self._opens - self._step, self._expected
-        has_begun = self._opens != NOT_BEGUN
+        last, expected = self._last, self._expected
         self._take_on(period)
-        if has_begun:
+        if last != NOT_BEGUN:
             earliest = max(self._seen + 1, now - self._max_delay - self._change.deviation)
             following = next_on_grid(last, period, earliest)
             self._expect(min(following, max(expected, last + period)))
-        return self._release(now)
+        released = self._release(now)
+        # At this instant another sample may come: available times must stay unique.
+        self._is_smooth = False
+        return released
 
     @property
     def _is_going_on(self) -> bool:
@@ -146,11 +152,15 @@ class Sampler:
         return bool(self._held) or self._heard < END_OF_TIME
 
     @property
+    def _opens(self) -> int:
+        return self._last + self._step
+
+    @property
     def _expected(self) -> int:
-        return self._opens + self._change.deviation
+        return self._last + self.period
 
     def _expect(self, valid_time: int) -> None:
-        self._opens = valid_time - self._change.deviation
+        self._last = valid_time - self.period
 
     def _take_on(self, period: Duration) -> None:
         self.period = period
@@ -158,7 +168,7 @@ class Sampler:
 
     def _push(self, sample: Sample[Any]) -> Sequence[Sample[Any]]:
         valid_time = sample.valid_time
-        last = max(self._opens - self._step, self._given_up)
+        last = max(self._last, self._given_up)
         if last < valid_time < self._opens and self._policy.allows_delay(sample.delay):
             self._seen = max(self._seen, valid_time)
             return ()
@@ -170,7 +180,7 @@ class Sampler:
         if sample.delay > self._max_delay:
             self._out.violations.append(delay_violation(sample, self._policy))
             return ()
-        if self._opens == NOT_BEGUN:
+        if self._last == NOT_BEGUN:
             self._expect(sample.valid_time)
         if self._max_delay == NEVER:
             missing = -((self._opens + self._width - sample.valid_time) // self.period)
@@ -183,7 +193,7 @@ class Sampler:
 
     def _leave_out(self, sample: Sample[Any]) -> None:
         """Leave out what is too near to the last sample, and publish what comes too late."""
-        last = max(self._opens - self._step, self._given_up)
+        last = max(self._last, self._given_up)
         if sample.valid_time > last:
             self._seen = max(self._seen, sample.valid_time)
         elif self._change.deviation or self._is_on_grid(sample.valid_time, self._change.period):
@@ -209,7 +219,7 @@ class Sampler:
 
     def _count_missing(self, settled: int) -> int:
         """Return for how many places nothing can come if all is known up to *settled*."""
-        if self._opens == NOT_BEGUN or not self._is_going_on:
+        if self._last == NOT_BEGUN or not self._is_going_on:
             return 0
         known = min(settled, self._end + self._change.deviation)
         if self._held:
@@ -220,12 +230,11 @@ class Sampler:
         """Wait no longer for the next samples; publish them if the longest period has passed."""
         if not count:
             return
-        last = self._opens - self._step
-        if self._given_up < last:
-            self._gap_after, self._unreported = last, 0
+        if self._given_up < self._last:
+            self._gap_after, self._unreported = self._last, 0
         self._unreported += count
-        self._opens += count * self.period
-        self._given_up = self._opens + self._width - self.period
+        self._last += count * self.period
+        self._given_up = self._last + self._change.deviation
         longest = self._gap_after + self._change.longest_period + self._change.deviation
         if self._given_up >= longest:
             first = self._expected - self._unreported * self.period
@@ -240,7 +249,8 @@ class Sampler:
             sample = held.pop(0)
             if sample.valid_time >= self._opens:
                 released.append(self._out.pass_on(sample, now))
-                self._opens = sample.valid_time + self._step
+                self._last = sample.valid_time
             else:
                 self._seen = max(self._seen, sample.valid_time)
+        self._is_smooth = not held and self._out.last <= now
         return released
