@@ -65,8 +65,12 @@ def faults(formula: Formula, vocabulary: Vocabulary | None = None) -> list[Speci
     """Return the faults of *formula* in reading order.
 
     Intervals, divisions by zero, repeated variables and the sorts of constants are always
-    looked at; names, numbers of arguments and the sorts of features only with a *vocabulary*.
+    looked at; names, numbers of arguments and the sorts of features only with a *vocabulary*. That
+    a formula is nested too deep is its only fault then.
     """
+    deep = syntax.too_deep(formula)
+    if deep is not None:
+        return [SpecificationError(syntax.TOO_DEEP, deep.span)]
     checker = _Checker(vocabulary)
     found = [*checker.boolean_faults(formula, {}), *checker.faults(formula, {})]
     return sorted(found, key=lambda fault: fault.span.start)

@@ -13,14 +13,11 @@ from lark.visitors import Transformer_NonRecursive
 
 from dyknow.errors import FormulaSyntaxError
 from dyknow.mtl import syntax
-from dyknow.mtl.syntax import Formula, Interval, Node, Term, descendants
+from dyknow.mtl.syntax import TOO_DEEP, Formula, Interval, Node, Term, too_deep
 from dyknow.source_text import SourceText, Span
 from dyknow.time import duration_from_text
 
-__all__ = ["MAX_DEPTH", "parse_formula"]
-
-MAX_DEPTH = 200
-"""How deep operators may be nested; `and` or `or` between any number of formulas counts once."""
+__all__ = ["parse_formula"]
 
 
 def parse_formula(text: str, source_name: str = "<formula>") -> Formula:
@@ -178,10 +175,9 @@ class _Builder(Transformer_NonRecursive[Token, Any]):
 
 
 def _forbid_deep_nesting(node: Node) -> None:
-    for part, depth in descendants(node):
-        if depth > MAX_DEPTH:
-            message = f"expected at most {MAX_DEPTH} operators inside one another, found more"
-            raise FormulaSyntaxError(message, part.span)
+    deep = too_deep(node)
+    if deep is not None:
+        raise FormulaSyntaxError(TOO_DEEP, deep.span)
 
 
 def _syntax_error(error: UnexpectedInput, source: SourceText) -> FormulaSyntaxError:

@@ -134,7 +134,7 @@ def _within(interval: Interval) -> str:
 
 def _inside(node: Node, level: int) -> str:
     """Return the text of an operand, in parentheses if it binds looser than *level*."""
-    text = _text(node)
+    text = _text.dispatch(type(node))(node)  # Without the wrapper nesting costs fewer frames.
     return text if _level(node) >= level else f"({text})"
 
 

@@ -15,6 +15,8 @@ from dyknow.time import Duration
 __all__ = [
     "ALWAYS_HENCEFORTH",
     "FALSE",
+    "MAX_DEPTH",
+    "TOO_DEEP",
     "TRUE",
     "Always",
     "Argument",
@@ -45,8 +47,15 @@ __all__ = [
     "descendants",
     "operands",
     "parts",
+    "too_deep",
     "with_operands",
 ]
+
+
+MAX_DEPTH = 200
+"""How deep operators may be nested; `and` or `or` between any number of formulas counts once."""
+
+TOO_DEEP = f"expected at most {MAX_DEPTH} operators inside one another, found more"
 
 
 class Verdict(IntEnum):
@@ -328,3 +337,8 @@ def descendants(node: Node) -> Iterator[tuple[Node, int]]:
         found, depth = waiting.pop()
         yield found, depth
         waiting.extend((part, depth + 1) for part in reversed(parts(found)))
+
+
+def too_deep(node: Node) -> Node | None:
+    """Return a part of *node* that lies deeper than `MAX_DEPTH`, if there is one."""
+    return next((part for part, depth in descendants(node) if depth > MAX_DEPTH), None)

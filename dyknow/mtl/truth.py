@@ -40,7 +40,8 @@ class StateTruth:
             otherwise: The general way to do the same.
         """
         function = _Function()
-        bits = [f"({function.atom(a)}) << {i}" for i, a in enumerate(atoms)]
+        for number, atom in enumerate(atoms):
+            function.add(atom, number)
         self._name_by_term = function.name_by_term
         self._names: dict[str, Any] = {
             "otherwise": otherwise,
@@ -49,7 +50,7 @@ class StateTruth:
             **function.constants,
         }
         self.spell({term: term for term in function.name_by_term})
-        exec(function.source(" | ".join(bits) or "0"), self._names)
+        exec(function.source(), self._names)
         self.of: OfState = self._names["truth"]
 
     def spell(self, keys: Mapping[str, str]) -> None:
@@ -59,28 +60,33 @@ class StateTruth:
 
 
 class _Function:
-    """The source of a function, as it grows."""
+    """The source of a function, as it grows by a few lines for each atom.
+
+    No expression has more than one operator, as Python does not compile what is nested too deep.
+    """
 
     def __init__(self) -> None:
         self.name_by_term: dict[str, str] = {}
         self.constants: dict[str, Any] = {}
-        self._checks: dict[str, None] = {}
-        self._sides = 0
+        self._lines: dict[str, None] = {}
+        self._name_by_expression: dict[str, str] = {}
 
-    def source(self, result: str) -> str:
+    def add(self, atom: Atom, number: int) -> None:
+        """Compute an atom and set its bit."""
+        if isinstance(atom, Feature):
+            truth = self._checked(atom, _BOOLEAN)
+        else:
+            truth = self._comparison(atom)
+        self._lines[f"bits |= ({truth}) << {number}" if number else f"bits = int({truth})"] = None
+
+    def source(self) -> str:
         """Return the text of the function."""
         fetch = [f"{name} = state[key_{name}]" for name in self.name_by_term.values()]
-        body = "\n        ".join([*fetch, *self._checks, f"return {result}"])
+        body = "\n        ".join([*fetch, "bits = 0", *self._lines, "return bits"])
         return (
             f"def truth(state):\n    try:\n        {body}\n"
             "    except usual:\n        return otherwise(state)\n"
         )
-
-    def atom(self, atom: Atom) -> str:
-        """Return an expression for the truth of an atom."""
-        if isinstance(atom, Feature):
-            return self._checked(atom, _BOOLEAN)
-        return self._comparison(atom)
 
     def _comparison(self, atom: Comparison) -> str:
         operator = _OPERATORS.get(atom.operator, atom.operator)
@@ -94,39 +100,36 @@ class _Function:
 
     def _side(self, term: Term, kind: str) -> str:
         """Return a name for a side of a comparison, which must be of a kind and not NaN."""
-        if isinstance(term, syntax.Truth | syntax.Number | syntax.Text):
-            self._check_kind(term, kind)
-            return self._expression(term)
-        if isinstance(term, Feature):
-            name = self._checked(term, kind)
-        else:
-            self._check_kind(term, kind)
-            name, self._sides = f"side{self._sides}", self._sides + 1
-            self._checks[f"{name} = {self._expression(term)}"] = None
-        self._check(f"{name} != {name}")
+        name = self._operand(term, kind)
+        if not isinstance(term, syntax.Truth | syntax.Number | syntax.Text):
+            self._check(f"{name} != {name}")
         return name
 
-    def _expression(self, term: Term) -> str:
-        match term:
-            case syntax.Truth(value) | syntax.Number(value) | syntax.Text(value):
-                name = f"constant{len(self.constants)}"
-                self.constants[name] = value
-                return name
-            case syntax.Feature():
-                return self._checked(term, _NUMBER)
-            case syntax.Minus(body):
-                return f"(-{self._number(body)})"
-            case syntax.Arithmetic(left, operator, right):
-                return f"({self._number(left)} {operator} {self._number(right)})"
-
-    def _number(self, term: Term) -> str:
-        self._check_kind(term, _NUMBER)
-        return self._expression(term)
-
-    def _check_kind(self, term: Term, kind: str) -> None:
-        """Leave every state to the general way if a term can never be of the kind it must be."""
-        if _kind(term) not in {kind, ""}:
+    def _operand(self, term: Term, kind: str) -> str:
+        """Return a name for a term, which must be of a kind."""
+        if isinstance(term, Feature):
+            return self._checked(term, kind)
+        if _kind(term) != kind:
             self._check("True")
+        match term:
+            case syntax.Minus(body):
+                return self._named(f"-{self._operand(body, _NUMBER)}")
+            case syntax.Arithmetic(left, operator, right):
+                one, other = self._operand(left, _NUMBER), self._operand(right, _NUMBER)
+                return self._named(f"{one} {operator} {other}")
+            case _:
+                name = f"constant{len(self.constants)}"
+                self.constants[name] = term.value
+                return name
+
+    def _named(self, expression: str) -> str:
+        """Return a name for the value of an expression."""
+        name = self._name_by_expression.get(expression)
+        if name is None:
+            name = f"value{len(self._name_by_expression)}"
+            self._name_by_expression[expression] = name
+            self._lines[f"{name} = {expression}"] = None
+        return name
 
     def _checked(self, feature: Feature, kind: str) -> str:
         """Return the name of a feature, which must be of a kind if one is given."""
@@ -137,7 +140,7 @@ class _Function:
         return name
 
     def _check(self, fault: str) -> None:
-        self._checks[f"if {fault}: return otherwise(state)"] = None
+        self._lines[f"if {fault}: return otherwise(state)"] = None
 
 
 def _kind(term: Term) -> str:
