@@ -267,7 +267,8 @@ class AdaptedStream:
             self._hand_on(adapted, sample.available_time)
         if self._noticed:
             self._publish()
-        if self._has_alarms:
+        if self._has_alarms and (self._ticket is None or self._ticket.wake_at is None):
+            # Else a turn is planned that is early enough: no sample brings the alarm nearer.
             self._plan()
 
     def _beat(self, heartbeat: Heartbeat) -> None:

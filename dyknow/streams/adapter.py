@@ -60,7 +60,7 @@ class Adapter(ReportsViolations, Protocol):
         """Let time pass up to and including *now* and yield what has fallen due."""
 
     def due(self) -> TimePoint | None:
-        """Return the next deadline, if there is one."""
+        """Return the next deadline, if there is one; no sample brings it nearer."""
 
 
 @runtime_checkable

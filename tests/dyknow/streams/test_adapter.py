@@ -264,3 +264,16 @@ def test_only_sampled_streams_can_be_given_another_period():
     assert isinstance(adapter_for(_approximating(period=100, delay=20)), VariesPeriod)
     assert isinstance(adapter_for(Policy(change=SampleEvery(ms(100)))), VariesPeriod)
     assert not isinstance(adapter_for(Policy(max_delay=ms(100))), VariesPeriod)
+
+
+@settings(derandomize=True, deadline=None, max_examples=100)
+@given(streams(), policies() | approximating_policies())
+def test_no_sample_brings_the_deadline_nearer(given_stream, policy):
+    """Whoever has planned to come back at a deadline need not look again for each sample."""
+    adapter = adapter_for(policy) or Filter(policy)
+    for sample in given_stream:
+        adapter.advance(TimePoint(sample.available_time - 1))
+        before = adapter.due()
+        adapter.push(sample)
+        after = adapter.due()
+        assert before is None or after is None or before <= after
