@@ -1,4 +1,4 @@
-"""From the text of a formula to its syntax."""
+"""From the text of a formula, or of a file of one, to its syntax."""
 
 import json
 from collections.abc import Iterable
@@ -13,11 +13,23 @@ from lark.visitors import Transformer_NonRecursive
 
 from dyknow.errors import FormulaSyntaxError
 from dyknow.mtl import syntax
-from dyknow.mtl.syntax import TOO_DEEP, Formula, Interval, Node, Term, too_deep
+from dyknow.mtl.syntax import (
+    TOO_DEEP,
+    Declaration,
+    Document,
+    FeatureDeclaration,
+    Formula,
+    Interval,
+    Node,
+    ObjectDeclaration,
+    SortDeclaration,
+    Term,
+    too_deep,
+)
 from dyknow.source_text import SourceText, Span
 from dyknow.time import duration_from_text
 
-__all__ = ["parse_formula"]
+__all__ = ["parse_document", "parse_formula"]
 
 
 def parse_formula(text: str, source_name: str = "<formula>") -> Formula:
@@ -30,22 +42,46 @@ def parse_formula(text: str, source_name: str = "<formula>") -> Formula:
     Raises:
         FormulaSyntaxError: The text is not a formula; its span says where.
     """
+    (node,) = _parsed(text, source_name, "start").children
+    _forbid_deep_nesting(node)
+    return _formula(node)
+
+
+def parse_document(text: str, source_name: str = "<formula>") -> Document:
+    """Read a formula with declarations of the sorts, objects and features before it, if any.
+
+    Args:
+        text: The declarations and the formula.
+        source_name: How messages refer to the text.
+
+    Raises:
+        FormulaSyntaxError: The text does not follow the grammar; its span says where.
+    """
+    *declarations, node = _parsed(text, source_name, "document").children
+    _forbid_deep_nesting(node)
+    return Document(tuple(declarations), _formula(node))
+
+
+def _parsed(text: str, source_name: str, start: str) -> Any:
     source = SourceText(source_name, text)
     try:
-        tree = _grammar().parse(text)
-        (node,) = _Builder(source).transform(tree).children
+        return _Builder(source).transform(_grammar().parse(text, start=start))
     except UnexpectedInput as error:
         raise _syntax_error(error, source) from None
     except VisitError as error:
         raise error.orig_exc from None
-    _forbid_deep_nesting(node)
-    return _formula(node)
 
 
 @cache
 def _grammar() -> Lark:
     text = files("dyknow.mtl").joinpath("grammar.lark").read_text(encoding="utf-8")
-    return Lark(text, parser="lalr", propagate_positions=True, maybe_placeholders=False)
+    return Lark(
+        text,
+        parser="lalr",
+        start=["start", "document"],
+        propagate_positions=True,
+        maybe_placeholders=False,
+    )
 
 
 def _formula(node: Node) -> Formula:
@@ -89,6 +125,17 @@ class _Builder(Transformer_NonRecursive[Token, Any]):
 
     def _span(self, meta: Meta) -> Span:
         return Span(self._source, meta.start_pos, meta.end_pos)
+
+    def sort(self, meta: Meta, name: syntax.Name, *objects: syntax.Name) -> Declaration:
+        return SortDeclaration(name, objects, span=self._span(meta))
+
+    def objects(self, meta: Meta, *names: syntax.Name) -> Declaration:
+        *objects, sort = names
+        return ObjectDeclaration(tuple(objects), sort, span=self._span(meta))
+
+    def feature_signature(self, meta: Meta, name: syntax.Name, *sorts: syntax.Name) -> Declaration:
+        *parameters, sort = sorts
+        return FeatureDeclaration(name, tuple(parameters), sort, span=self._span(meta))
 
     def equivalence(self, meta: Meta, left: Node, right: Node) -> Formula:
         return syntax.Equivalence(_formula(left), _formula(right), span=self._span(meta))
@@ -217,6 +264,7 @@ _KINDS = (
     ("NAME", "a name"),
     ("IN", "'in'"),
     ("COMMA", "','"),
+    ("COLON", "':'"),
     ("RPAR", "')'"),
     ("RSQB", "']'"),
     ("$END", "the end"),

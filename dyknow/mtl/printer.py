@@ -8,10 +8,10 @@ import json
 from functools import singledispatch
 
 from dyknow.mtl import syntax
-from dyknow.mtl.syntax import Interval, Node
+from dyknow.mtl.syntax import Declaration, Document, Interval, Node
 from dyknow.time import text_from_duration
 
-__all__ = ["text_from_formula", "text_from_interval"]
+__all__ = ["text_from_document", "text_from_formula", "text_from_interval"]
 
 _LOOSEST, _IMPLICATION, _OR, _AND, _UNTIL, _PREFIX, _SUM, _PRODUCT, _MINUS, _TIGHTEST = range(10)
 _PRINTED_IN_FULL = 1e15
@@ -22,10 +22,31 @@ def text_from_formula(node: Node | syntax.Name) -> str:
     return _text(node)
 
 
+def text_from_document(document: Document) -> str:
+    """Write declarations and a formula in the form that `parse_document` reads."""
+    lines = [_declared(declaration) for declaration in document.declarations]
+    return "\n".join([*lines, text_from_formula(document.formula)])
+
+
 def text_from_interval(interval: Interval) -> str:
     """Write an interval, such as `[0, 1000]` or `[200, oo]`, in milliseconds."""
     end = "oo" if interval.end is None else text_from_duration(interval.end)
     return f"[{text_from_duration(interval.start)}, {end}]"
+
+
+def _declared(declaration: Declaration) -> str:
+    match declaration:
+        case syntax.SortDeclaration(name, objects):
+            return f"sort {name.name}" + (f" = {_listed(objects)}" if objects else "")
+        case syntax.ObjectDeclaration(names, sort):
+            return f"object {_listed(names)}: {sort.name}"
+        case syntax.FeatureDeclaration(name, parameters, sort):
+            arguments = f"({_listed(parameters)})" if parameters else ""
+            return f"feature {name.name}{arguments}: {sort.name}"
+
+
+def _listed(names: tuple[syntax.Name, ...]) -> str:
+    return ", ".join(name.name for name in names)
 
 
 @singledispatch

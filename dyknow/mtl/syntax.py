@@ -24,11 +24,14 @@ __all__ = [
     "Atom",
     "Comparison",
     "Conjunction",
+    "Declaration",
     "Disjunction",
+    "Document",
     "Equivalence",
     "Eventually",
     "Exists",
     "Feature",
+    "FeatureDeclaration",
     "ForAll",
     "Formula",
     "Implication",
@@ -38,6 +41,8 @@ __all__ = [
     "Negation",
     "Node",
     "Number",
+    "ObjectDeclaration",
+    "SortDeclaration",
     "Term",
     "Text",
     "TimeModel",
@@ -254,6 +259,42 @@ class Exists(_Node):
     variable: Name
     domain: Name
     body: "Formula"
+
+
+@dataclass(frozen=True)
+class SortDeclaration(_Node):
+    """A sort, which is a domain of quantification, with its objects if they are known."""
+
+    name: Name
+    objects: tuple[Name, ...] = ()
+
+
+@dataclass(frozen=True)
+class ObjectDeclaration(_Node):
+    """Objects of a sort that a formula mentions, or free variables such as `from`."""
+
+    names: tuple[Name, ...]
+    sort: Name
+
+
+@dataclass(frozen=True)
+class FeatureDeclaration(_Node):
+    """A feature with the sorts of its arguments and of its value."""
+
+    name: Name
+    parameters: tuple[Name, ...]
+    sort: Name
+
+
+Declaration = SortDeclaration | ObjectDeclaration | FeatureDeclaration
+
+
+@dataclass(frozen=True)
+class Document:
+    """A formula and the declarations before it."""
+
+    declarations: tuple[Declaration, ...]
+    formula: "Formula"
 
 
 Argument = Name | Number | Text
