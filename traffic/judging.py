@@ -2,11 +2,13 @@
 
 from collections.abc import Callable, Collection, Iterator, Mapping
 from dataclasses import dataclass, replace
+from itertools import chain
 from pathlib import Path
 from typing import Any
 
+from dyknow.judging.declared import DeclaredNetwork
 from dyknow.judging.judge import judge
-from dyknow.judging.judgement import Breach, Finding, Judgement
+from dyknow.judging.judgement import NOT_RECORDED, Breach, Finding, Judgement
 from dyknow.judging.recorded import RecordedExecution
 from dyknow.judging.specified import declared_network
 from dyknow.kpl.names import Declarations
@@ -21,13 +23,21 @@ from traffic.recording.describing import RunDescription
 from traffic.recording.rebuilding import describe, open_run, world_of
 from traffic.sorts import SORTS
 from traffic.sumo.replayed import TRUTH
-from traffic.system import MonitoringSystem, implementations_of, read_specification
+from traffic.system import (
+    MonitoringSystem,
+    image_labels,
+    implementations_of,
+    read_specification,
+)
 from traffic.world import World, generators_of
 
 __all__ = ["JudgedRun", "document_from", "judge_recording"]
 
 _SAID_AGAIN = frozenset({"camera_pose", "link_turns"})
 """Sources that say nothing but what the world does, whenever they are asked."""
+
+_IMAGES = "images are not recorded, but computed again by a replay"
+"""Why streams of images are not judged."""
 
 OnProgress = Callable[[float, float], None]
 """Told how many declarations have been judged, and how many there are."""
@@ -119,6 +129,7 @@ def _judged(recording: Recording, path: Path | None, on_progress: OnProgress | N
         recording, until, without=(TRUTH,), is_complete=description.is_complete
     )
     judgement = judge(network, execution, on_progress=on_progress)
+    judgement = _about_images(judgement, network, image_labels(specification))
     if execution.is_whole:
         return judgement
     rest = f"what came after {text_from_duration(execution.until)}: the recording ends there"
@@ -139,6 +150,21 @@ def _outputs(
         wanted = f"a specification with one of the outputs {', '.join(description.outputs)}"
         raise RequestError("SPECIFICATION", wanted, path)
     return outputs
+
+
+def _about_images(
+    judgement: Judgement, network: DeclaredNetwork, images: Collection[str]
+) -> Judgement:
+    """Say of streams of images that they never are recorded, which is no news to anyone."""
+    streams = [*network.outputs, *chain(*(each.inputs for each in network.processes.values()))]
+    of_images = {stream.topic for stream in streams if stream.provider in images} | {*images}
+    findings = tuple(
+        replace(each, unjudged=(_IMAGES,))
+        if each.stream in of_images and NOT_RECORDED in each.unjudged
+        else each
+        for each in judgement.findings
+    )
+    return replace(judgement, findings=findings)
 
 
 class _Builder:

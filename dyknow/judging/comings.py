@@ -5,7 +5,7 @@ from collections.abc import Iterator
 from dyknow.errors import ProcessError
 from dyknow.judging.comparing import Comparison
 from dyknow.judging.declared import OUTPUT, ChangingPart, DeclaredNetwork
-from dyknow.judging.judgement import Basis, Breach, Definition, Draft, Finding
+from dyknow.judging.judgement import NOT_RECORDED, Basis, Breach, Definition, Draft, Finding
 from dyknow.judging.published import PublishedViolations
 from dyknow.judging.streams import KnownStreams
 from dyknow.judging.wellformed import heartbeat_breaches, order_breaches
@@ -76,7 +76,7 @@ class _Rerun:
             self._comparisons[topic].expect(element)
         elif topic not in self._drafts:
             draft = self._drafts[topic] = Draft(topic, Definition.UNIT, self._keep)
-            draft.unjudged.append("it was not recorded")
+            draft.unjudged.append(NOT_RECORDED)
 
     def _leave_open(self, reason: str) -> None:
         for draft in self._drafts.values():

@@ -15,7 +15,17 @@ from dyknow.judging.comings import changing_findings
 from dyknow.judging.comparing import Comparison
 from dyknow.judging.declared import DeclaredNetwork, DeclaredProcess, DeclaredStream
 from dyknow.judging.execution import Execution
-from dyknow.judging.judgement import Basis, Breach, Definition, Draft, Finding, Judgement, Tally
+from dyknow.judging.judgement import (
+    NOT_RECORDED,
+    PROVIDER_NOT_RECORDED,
+    Basis,
+    Breach,
+    Definition,
+    Draft,
+    Finding,
+    Judgement,
+    Tally,
+)
 from dyknow.judging.published import PublishedViolations, ViolatedStream
 from dyknow.judging.recomputing import Recomputation, unknown_behind
 from dyknow.judging.streams import KnownStreams
@@ -113,7 +123,7 @@ class _Judge:
         if not self._streams.may_have_been(topic):
             draft.tally.add([Breach(topic, Definition.MODEL, "such a stream", "none")])
         elif topic not in self._streams:
-            draft.unjudged.append("it was not recorded")
+            draft.unjudged.append(NOT_RECORDED)
         elif fault := self._streams.fault(topic):
             whole = "a stream that can be read"
             draft.tally.add([Breach(topic, Definition.MODEL, whole, fault)])
@@ -180,7 +190,7 @@ class _Judge:
             self._adapt(stream, draft)
         else:
             self._published.leave_open(_violated(stream))
-            draft.unjudged.append(f"'{stream.provider}', of which it is made, was not recorded")
+            draft.unjudged.append(PROVIDER_NOT_RECORDED)
         return self._finished(draft)
 
     def _adapt(self, stream: DeclaredStream, draft: Draft) -> None:

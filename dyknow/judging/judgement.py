@@ -11,7 +11,23 @@ from enum import Enum, StrEnum
 from dyknow.streams.sample import Sample
 from dyknow.time import TimePoint, text_from_duration
 
-__all__ = ["Basis", "Breach", "Definition", "Draft", "Finding", "Judgement", "Tally"]
+__all__ = [
+    "NOT_RECORDED",
+    "PROVIDER_NOT_RECORDED",
+    "Basis",
+    "Breach",
+    "Definition",
+    "Draft",
+    "Finding",
+    "Judgement",
+    "Tally",
+]
+
+NOT_RECORDED = "not recorded"
+"""Why a stream is not judged that there was, but not in the execution that is known."""
+
+PROVIDER_NOT_RECORDED = "what it is made of is not recorded"
+"""Why a stream is not compared with that of its provider."""
 
 
 class Definition(StrEnum):

@@ -5,6 +5,7 @@ from typing import NamedTuple
 
 import pytest
 
+from tests.support.judging import assert_judged_correct
 from traffic.request import RunRequest
 from traffic.results import RunResult
 from traffic.running import run_scenario
@@ -31,4 +32,5 @@ def recorded_run(tmp_path_factory: pytest.TempPathFactory) -> RecordedRun:
         out=place / "run",
     )
     result, folder = run_scenario(request, lambda *_: None)
+    assert_judged_correct(place / "run.mcap")
     return RecordedRun(place / "run.mcap", result, folder)

@@ -237,6 +237,28 @@ def test_violations_without_a_cause_are_found(recording: Path, tmp_path: Path) -
     assert breach.stream == "violations of 'percepts[truth]' to 'world_objects'"
 
 
+def test_what_was_not_recorded_is_told_in_a_line_for_each_reason(tmp_path: Path) -> None:
+    """Of images it is said that they never are recorded; the document names every stream."""
+    request = RunRequest.from_texts(
+        scenario="crossing", duration="0.2 s", record=tmp_path / "x.mcap", out=tmp_path / "run"
+    )
+    run_scenario(request, lambda *_: None)
+    runner = CliRunner()
+
+    shown = runner.invoke(app, ["judge", str(tmp_path / "x.mcap")])
+    document = json.loads(runner.invoke(app, ["judge", str(tmp_path / "x.mcap"), "--json"]).stdout)
+
+    (about_images,) = [line for line in shown.stdout.splitlines() if "image" in line]
+    assert about_images == (
+        "not judged: colour_images, thermal_images, sync(colour_images, thermal_images) and 3 "
+        "more: images are not recorded, but computed again by a replay"
+    )
+    reasons = {each["stream"]: each["unjudged"] for each in document["findings"]}
+    assert sum("images" in " ".join(each) for each in reasons.values()) == 6
+    assert reasons["percepts[vision]"] == reasons["output/cars"] == []
+    assert not any(stream.startswith("output/") and reasons[stream] for stream in reasons)
+
+
 def test_the_command_says_whether_it_is_satisfied(recording: Path, tmp_path: Path) -> None:
     """The exit status is 0 if the run satisfies the specification, and 1 if it does not."""
     altered = rewrite(recording, tmp_path / "x.mcap", {"cars": at_place(delay, 9)}, codecs=CODECS)

@@ -8,6 +8,7 @@ import pytest
 
 from dyknow.errors import SpecificationErrors
 from dyknow.recordings.errors import RecordingError
+from tests.support.judging import assert_judged_correct
 from traffic.errors import ReplayError, RequestError, ResultError
 from traffic.features.moving import Moving
 from traffic.replaying import ReplayRequest, replay
@@ -61,6 +62,7 @@ def test_a_replay_can_be_recorded_and_replayed_in_turn(recorded_run, tmp_path):
     first = again(recorded_run.path, record=tmp_path / "again.mcap", out=tmp_path / "run")
     second = again(tmp_path / "again.mcap")
 
+    assert_judged_correct(tmp_path / "again.mcap")
     assert first.replay is not None
     assert second.replay is not None
     assert second.replay.compared == second.replay.identical == first.replay.identical
@@ -285,6 +287,7 @@ def test_a_vision_run_is_replayed_from_the_vehicles(tmp_path):
     result = again(tmp_path / "run.mcap")
     below = again(tmp_path / "run.mcap", taken="percepts[vision]")
 
+    assert_judged_correct(tmp_path / "run.mcap")
     assert result.replay is not None
     assert below.replay is not None
     assert result.replay.compared == result.replay.identical > 25

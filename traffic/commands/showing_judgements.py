@@ -1,6 +1,6 @@
 """What was found when a run was judged, in words."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 
 from rich.console import Console
 from rich.markup import escape
@@ -12,6 +12,8 @@ from traffic.judging import JudgedRun
 __all__ = ["show_judgement"]
 
 _PROCESSES = (Definition.SOURCE, Definition.UNIT)
+_NAMED = 6
+"""How many streams a line names."""
 
 
 def show_judgement(judged: JudgedRun) -> None:
@@ -57,6 +59,15 @@ def _broken(finding: Finding) -> Iterator[str]:
         yield f"  and {finding.breach_count - len(finding.breaches)} more"
 
 
+def _names(findings: Sequence[Finding]) -> str:
+    """Name streams, generators first; of many, the first few."""
+    generators = [each.stream for each in findings if each.definition in _PROCESSES]
+    adapted = [each.stream for each in findings if each.definition not in _PROCESSES]
+    named = (generators or adapted)[:_NAMED]
+    rest = len(findings) - len(named)
+    return ", ".join(named) + (f" and {rest} more" if rest else "")
+
+
 def _about(definition: Definition) -> str:
     number = definition.value
     return number if not number[0].isdigit() else f"definition {number}"
@@ -70,12 +81,12 @@ def _place(breach: Breach) -> str:
 
 
 def _left_open(judgement: Judgement) -> Iterator[str]:
-    """Yield what could not be judged, one line for each reason."""
-    streams: dict[str, list[str]] = {}
+    """Yield what could not be judged, one line for each reason; of each stream the first one."""
+    findings: dict[str, list[Finding]] = {}
     for finding in judgement.findings:
-        for reason in finding.unjudged:
-            streams.setdefault(reason, []).append(finding.stream)
-    for reason, names in streams.items():
-        yield f"not judged: {', '.join(names)}: {reason}"
+        for reason in finding.unjudged[:1]:
+            findings.setdefault(reason, []).append(finding)
+    for reason, unjudged in findings.items():
+        yield f"not judged: {_names(unjudged)}: {reason}"
     for reason in judgement.unjudged:
         yield f"not judged: {reason}"

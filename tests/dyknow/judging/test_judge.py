@@ -138,7 +138,7 @@ def test_what_was_not_recorded_is_computed() -> None:
     assert judgement.is_satisfied
     by_stream = {finding.stream: finding for finding in judgement.findings}
     assert by_stream["second"].basis is Basis.COMPUTED
-    assert by_stream["first"].unjudged == ("it was not recorded",)
+    assert by_stream["first"].unjudged == ("not recorded",)
 
 
 def test_without_its_source_a_unit_is_left_open() -> None:

@@ -18,7 +18,12 @@ def test_a_recording_says_what_it_was_made_from(recorded_run):
         said = describe(recording)
 
     assert said.is_complete
-    assert said.parameters == {"view": "truth", "sample_period": 100.0, "position_noise": 0.5}
+    assert said.parameters == {
+        "view": "truth",
+        "sample_period": 100.0,
+        "position_noise": 0.5,
+        "longest_frame_period": 40.0,
+    }
     assert said.outputs == ("percepts", "cars", "recognised_turns", "recognised_overtakes")
     assert said.origin.scenario.name == "crossing"
     assert said.named_text[0] == "monitoring.kpl"

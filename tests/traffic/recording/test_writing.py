@@ -1,6 +1,5 @@
 """What a run writes while it is recorded."""
 
-import numpy as np
 import pytest
 from foxglove_schemas_protobuf.CompressedImage_pb2 import CompressedImage
 from foxglove_schemas_protobuf.SceneUpdate_pb2 import SceneUpdate
@@ -9,7 +8,7 @@ from mcap.reader import make_reader
 from dyknow.recordings.channels import ChannelRole
 from dyknow.time import MILLISECOND, TimePoint
 from networks.reading import read_road_map
-from perception.camera import Calibration, Camera
+from tests.support.judging import assert_judged_correct
 from traffic.bundled import data_folder
 from traffic.errors import RequestError
 from traffic.origin import origin_of
@@ -19,7 +18,7 @@ from traffic.recording.writing import recorded
 from traffic.request import RecordingRequest, RunRequest
 from traffic.sumo.replayed import TRUTH
 from traffic.system import MonitoringSystem, bundled_specification
-from traffic.world import World
+from traffic.world import World, camera_of, generators_of
 
 CROSSING = data_folder() / "networks" / "crossing" / "crossing.net.xml"
 VISION = {
@@ -40,15 +39,15 @@ def write(tmp_path):
     """Return a function that records a system with cameras, and returns the path."""
 
     def write(streams=None, *, images=False, fails=False):
-        calibration = Calibration.from_field_of_view(width=64, height=48, horizontal=1.0)
-        camera = Camera.looking_at(0.0, 0.0, 60.0, calibration=calibration)
-        generator = np.random.Generator(np.random.PCG64(1))
+        asked = RunRequest.from_texts(scenario="crossing", duration="200 ms")
         road_map = read_road_map(CROSSING)
-        world = World(road_map, NoVehicles(), camera, generator)
+        _, sensors = generators_of(asked.seed)
+        camera = camera_of(asked.scenario.camera, road_map)
+        world = World(road_map, NoVehicles(), camera, sensors)
         parameters = {"view": "vision", "sample_period": 100.0}
         system = MonitoringSystem(world, parameters, ("percepts", "cars"))
         description = RunDescription(
-            origin=origin_of(RunRequest.from_texts(scenario="crossing")),
+            origin=origin_of(asked),
             text=bundled_specification().read_text("utf-8"),
             place="monitoring.kpl",
             parameters=parameters,
@@ -59,6 +58,7 @@ def write(tmp_path):
             system.network.kernel.run(TimePoint(200 * MILLISECOND))
             if fails:
                 raise ZeroDivisionError
+        assert_judged_correct(request.path)
         return request.path
 
     return write
