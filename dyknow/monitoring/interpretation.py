@@ -119,7 +119,7 @@ def _origin(
     term = text_from_formula(feature)
     target = _target(feature, interpretation)
     if target is None:
-        expected = "objects as arguments, or a label for it in the interpretation"
+        expected = "a label for it in the interpretation, since it cannot be one itself"
         return UngroundedFeatureError(term, expected, (), feature.span)
     label, path = target
     meaning = declared.meaning(label, OUTSIDE)
@@ -135,7 +135,7 @@ def _origin(
         return UngroundedFeatureError(term, expected, nearest, feature.span)
     table = meaning.table.label.text
     if not path:
-        expected = f"a column of the table stream '{table}', as in '{table}.{feature.name}'"
+        expected = f"a column of the table stream '{table}', as in '{table}.COLUMN'"
         return UngroundedFeatureError(term, expected, (), feature.span)
     return Origin(term, table, path, label.objects[0].text)
 

@@ -13,6 +13,7 @@ from itertools import count
 from dyknow.errors import PrototypeAlreadyExistsError
 from dyknow.kpl.build import specification
 from dyknow.kpl.implementations import Implementations
+from dyknow.kpl.names import Declarations
 from dyknow.kpl.network import Network
 from dyknow.monitoring.declaring import (
     UNIT,
@@ -143,10 +144,11 @@ class StreamReasoner:
         constraints = constraints_of_states(settings.policy)
         written = _by_name(name, formulas)
         ground = {each: grounded(formula, meaning) for each, formula in written.items()}
-        origins = self._origins(name, ground.values(), meaning)
+        declared = self.network.declarations
+        origins = _origins(name, ground.values(), meaning, declared)
         streams = tuple(dict.fromkeys(origin.stream for origin in origins))
         states = self._states.find(streams, constraints)
-        states = states or StateStream(self._new_label(), streams, constraints)
+        states = states or StateStream(_new_label(declared), streams, constraints)
         reader = StateReader(origins, states.streams, constants_in(ground.values(), meaning))
         unit = FormulaUnit(_group(ground, settings.time_model), reader, settings.on_gap)
         unit.on_decided = self._teller(on_violation)
@@ -211,24 +213,6 @@ class StreamReasoner:
         if not is_name(name):
             raise ValueError(f"expected a name that can stand in a label, found '{name}'")
 
-    def _origins(
-        self, name: str, formulas: Collection[Formula], meaning: Interpretation
-    ) -> tuple[Origin, ...]:
-        """Return where the features of formulas come from."""
-        features = [
-            feature
-            for feature in extract_symbols(formulas).features
-            if feature.arguments or meaning.constant(feature.name) is None
-        ]
-        if not features:
-            raise NoFeaturesError(name, [text_from_formula(each) for each in formulas])
-        return origins_of(features, meaning, self.network.declarations)
-
-    def _new_label(self) -> str:
-        """Return a label for a stream of states that nothing else has."""
-        taken = self.network.declarations.arities
-        return next(each for n in count(1) if (each := f"states_{n}") not in taken)
-
     def _declare(
         self, evaluation: Evaluation, states: StateStream, formulas: Mapping[str, Formula]
     ) -> None:
@@ -270,6 +254,26 @@ def _by_name(name: str, formulas: Formulas) -> dict[str, Formula]:
         each: parse_formula(formula, each) if isinstance(formula, str) else formula
         for each, formula in given.items()
     }
+
+
+def _origins(
+    name: str, formulas: Collection[Formula], meaning: Interpretation, declared: Declarations
+) -> tuple[Origin, ...]:
+    """Return where the features of formulas come from."""
+    features = [
+        feature
+        for feature in extract_symbols(formulas).features
+        if feature.arguments or meaning.constant(feature.name) is None
+    ]
+    if not features:
+        raise NoFeaturesError(name, [text_from_formula(each) for each in formulas])
+    return origins_of(features, meaning, declared)
+
+
+def _new_label(declared: Declarations) -> str:
+    """Return a label for a stream of states that nothing else has."""
+    labels = (f"states_{number}" for number in count(1))
+    return next(each for each in labels if each not in declared.arities)
 
 
 def _group(formulas: Mapping[str, Formula], time_model: TimeModel) -> FormulaGroup:
