@@ -12,6 +12,7 @@ from dyknow.kpl.description import NetworkChange, NetworkDescription
 from dyknow.kpl.implementations import Implementations
 from dyknow.kpl.names import Declarations
 from dyknow.kpl.outputs import Outputs
+from dyknow.kpl.parameters import bind_parameters
 from dyknow.kpl.parser import parse_policy, parse_specification
 from dyknow.kpl.printer import text_from
 from dyknow.kpl.removing import declarations_called, forbid_use
@@ -73,7 +74,7 @@ class Network:
     @property
     def declarations(self) -> Declarations:
         """What is declared now, by name, with the values that the parameters have."""
-        return Declarations(check(self._specification, self._values))
+        return Declarations(bind_parameters(self._specification, self._values)[0])
 
     @property
     def description(self) -> NetworkDescription:
