@@ -6,7 +6,17 @@ from dyknow.mtl import syntax
 from dyknow.mtl.syntax import Formula, Interval
 from dyknow.time import Duration
 
-__all__ = ["TWO_FEATURES", "any_formulas", "intervals", "small_formulas", "traces"]
+__all__ = [
+    "FOUR_FEATURES",
+    "TWO_FEATURES",
+    "any_formulas",
+    "intervals",
+    "plain_formulas",
+    "quantified_formulas",
+    "small_formulas",
+    "traces",
+    "wide_traces",
+]
 
 TWO_FEATURES = st.sampled_from([syntax.Feature("p"), syntax.Feature("q")])
 
@@ -29,6 +39,51 @@ def small_formulas(
 ) -> st.SearchStrategy[Formula]:
     """Formulas over p and q with every operator, nested."""
     return st.recursive(leaves, lambda inner: _operators(inner, longest), max_leaves=size)
+
+
+FOUR_FEATURES = ("p0", "p1", "p2", "p3")
+
+
+@st.composite
+def plain_formulas(draw, longest=6):
+    """Formulas with every operator in which no feature occurs twice, so that nothing follows."""
+    shape = draw(small_formulas(st.just(syntax.Feature("p")), longest, size=4))
+    names = iter(FOUR_FEATURES)
+    return _with_leaves(shape, lambda: syntax.Feature(next(names)))
+
+
+@st.composite
+def quantified_formulas(draw, longest=4):
+    """Formulas with quantifiers over two objects, nested in operators."""
+    leaves = st.sampled_from(
+        [syntax.Feature("p", (syntax.Name(name),)) for name in ("a", "b", "x")]
+        + [syntax.Comparison(syntax.Feature("x"), "=", syntax.Text("a"))]
+    )
+    inner = draw(small_formulas(leaves, longest, size=3))
+    kind = draw(st.sampled_from([syntax.ForAll, syntax.Exists]))
+    whole = kind(syntax.Name("x"), syntax.Name("D"), inner)
+    within = draw(intervals(longest))
+    return draw(
+        st.sampled_from([whole, syntax.Always(within, whole), syntax.Eventually(within, whole)])
+    )
+
+
+@st.composite
+def wide_traces(draw, features=FOUR_FEATURES, most=7, longest=7):
+    """Traces of several boolean features at irregular times."""
+    count = draw(st.integers(1, most))
+    gaps = draw(st.lists(st.integers(1, longest), min_size=count, max_size=count))
+    bits = draw(st.lists(st.integers(0, 15), min_size=count, max_size=count))
+    states = [{f: bool(b >> i & 1) for i, f in enumerate(features)} for b in bits]
+    return [(sum(gaps[: i + 1]), state) for i, state in enumerate(states)]
+
+
+def _with_leaves(formula, leaf):
+    """The formula with each of its atoms replaced by what *leaf* gives."""
+    if isinstance(formula, syntax.Feature):
+        return leaf()
+    inner = [_with_leaves(part, leaf) for part in syntax.operands(formula)]
+    return syntax.with_operands(formula, inner)
 
 
 def any_formulas() -> st.SearchStrategy[Formula]:

@@ -4,22 +4,33 @@ import gc
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from dyknow.errors import SpecificationErrors
 from dyknow.mtl import syntax
-from dyknow.mtl.monitors import MonitorColumns
+from dyknow.mtl.monitors import Monitor, MonitorColumns
 from dyknow.mtl.parser import parse_formula
 from dyknow.mtl.printer import text_from_formula
 from dyknow.mtl.progression import ProgressionTable
+from dyknow.mtl.quantifiers import expand
 from dyknow.mtl.semantics import deciding_state, evaluate
-from dyknow.mtl.syntax import Verdict
+from dyknow.mtl.syntax import TimeModel, Verdict
 from dyknow.time import MILLISECOND, Duration
-from tests.dyknow.mtl.formulas import TWO_FEATURES, small_formulas, traces
+from tests.dyknow.mtl.formulas import (
+    TWO_FEATURES,
+    plain_formulas,
+    quantified_formulas,
+    small_formulas,
+    traces,
+    wide_traces,
+)
 
-check = settings(derandomize=True, deadline=None, max_examples=250)
+check = settings(derandomize=True, deadline=None, max_examples=200)
+few = settings(derandomize=True, deadline=None, max_examples=60)
 WITH_CONSTANTS = TWO_FEATURES | st.sampled_from([syntax.TRUE, syntax.FALSE])
+MODELS = st.sampled_from(TimeModel)
+ALL = list(HealthCheck)
 
 
 def progressed(table, trace):
@@ -33,32 +44,87 @@ def progressed(table, trace):
     return verdicts
 
 
-def agrees(formula, trace):
+def monitored(table, trace):
+    """The verdict of a monitor after each state."""
+    monitor = Monitor(table)
+    return [monitor.step(time, state) for time, state in trace]
+
+
+def agrees(formula, trace, time_model=TimeModel.HOLD):
     """Verdicts never contradict the meaning and come no later."""
-    found = progressed(ProgressionTable(formula), trace)
-    verdict, state = deciding_state(formula, trace)
-    return verdict is Verdict.UNDECIDED or found[state] is verdict
+    table = ProgressionTable(formula, time_model=time_model)
+    found = progressed(table, trace)
+    verdict, state = deciding_state(formula, trace, time_model)
+    right = verdict is Verdict.UNDECIDED or found[state] is verdict
+    return right and monitored(table, trace) == found
+
+
+def agrees_exactly(formula, trace, time_model):
+    """The verdict after each state is that of the meaning."""
+    table = ProgressionTable(formula, time_model=time_model)
+    expected = [evaluate(formula, trace[: i + 1], time_model) for i in range(len(trace))]
+    return progressed(table, trace) == expected == monitored(table, trace)
 
 
 @check
-@given(small_formulas(), traces())
-def test_progression_decides_as_the_meaning_does_and_no_later(formula, trace):
+@given(small_formulas(), traces(), MODELS)
+def test_progression_decides_as_the_meaning_does_and_no_later(formula, trace, time_model):
     """At the state at which the definition decides a formula, progression has the verdict."""
-    assert agrees(formula, trace)
+    assert agrees(formula, trace, time_model)
+
+
+@few
+@given(plain_formulas(), wide_traces(), MODELS)
+def test_progression_decides_at_the_very_state(formula, trace, time_model):
+    """Where no two parts speak of the same, the deciding state is that of the definition."""
+    assert agrees_exactly(formula, trace, time_model)
+
+
+@few
+@given(quantified_formulas(), wide_traces(("p(a)", "p(b)")), MODELS)
+def test_quantifiers_are_progressed_over_their_domain(formula, trace, time_model):
+    """Each object of the domain counts, and at the state at which the definition decides."""
+    assert agrees(expand(formula, {"D": ("a", "b")}), trace, time_model)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("time_model", TimeModel)
+def test_ten_thousand_random_formulas(time_model):
+    """Verdict and deciding state agree with the naive meaning, for each time model."""
+    many = settings(derandomize=True, deadline=None, max_examples=3500, suppress_health_check=ALL)
+
+    @many
+    @given(small_formulas(), traces())
+    def nested(formula, trace):
+        assert agrees(formula, trace, time_model)
+
+    @many
+    @given(plain_formulas(), wide_traces())
+    def plain(formula, trace):
+        assert agrees_exactly(formula, trace, time_model)
+
+    @many
+    @given(quantified_formulas(), wide_traces(("p(a)", "p(b)")))
+    def quantified(formula, trace):
+        assert agrees(expand(formula, {"D": ("a", "b")}), trace, time_model)
+
+    nested()
+    plain()
+    quantified()
 
 
 @check
-@given(small_formulas(WITH_CONSTANTS), traces())
-def test_progression_decides_formulas_with_constants_no_later(formula, trace):
+@given(small_formulas(WITH_CONSTANTS), traces(), MODELS)
+def test_progression_decides_formulas_with_constants_no_later(formula, trace, time_model):
     """Constants inside change nothing in that."""
-    assert agrees(formula, trace)
+    assert agrees(formula, trace, time_model)
 
 
 @check
-@given(small_formulas(longest=3, size=5), traces(most=6, longest=30))
-def test_long_times_between_states_are_no_different(formula, trace):
+@given(small_formulas(longest=3, size=5), traces(most=6, longest=30), MODELS)
+def test_long_times_between_states_are_no_different(formula, trace, time_model):
     """States that lie further apart than all bounds are progressed through exactly."""
-    assert agrees(formula, trace)
+    assert agrees(formula, trace, time_model)
 
 
 @check
@@ -100,10 +166,10 @@ def test_progression_decides_exactly_when_the_meaning_does(text):
 
 
 @check
-@given(small_formulas(), st.lists(traces(most=5), min_size=1, max_size=6), st.booleans())
-def test_many_objects_are_progressed_as_each_alone(formula, many, together):
+@given(small_formulas(), st.lists(traces(most=5), min_size=1, max_size=6), st.booleans(), MODELS)
+def test_many_objects_are_progressed_as_each_alone(formula, many, together, time_model):
     """Columns give what the objects give one by one, with one elapsed time or several."""
-    table = ProgressionTable(formula)
+    table = ProgressionTable(formula, time_model=time_model)
     steps = min(len(trace) for trace in many)
     residuals = np.full(len(many), table.initial)
     for i in range(steps):
