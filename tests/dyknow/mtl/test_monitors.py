@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from dyknow.errors import FeatureError
+from dyknow.errors import FeatureError, StateOrderError
 from dyknow.mtl.columns import evaluate_atoms
 from dyknow.mtl.monitors import Monitor, MonitorColumns
 from dyknow.mtl.parser import parse_formula
@@ -146,3 +146,29 @@ def test_a_maintain_condition_forgives_short_gaps():
             decided.setdefault(int(row), (step, int(verdicts[row])))
 
     assert decided == {1: (105, -1)}
+
+
+def test_a_monitor_has_a_time_model_by_name():
+    """A gap between two states shows what holds: the state before it, or nothing."""
+    formula = parse_formula("eventually [300, 400] p")
+    states = [(0, False), (200, True), (500, False)]
+    found = {}
+    for name in ("hold", "points"):
+        monitor = Monitor(formula, time_model=name)
+        found[name] = [monitor.step(ms(t), {"p": p}) for t, p in states]
+
+    assert found["hold"] == [UNDECIDED, UNDECIDED, TRUE]
+    assert found["points"] == [UNDECIDED, UNDECIDED, FALSE]
+    with pytest.raises(ValueError, match="'sampled' is not a valid TimeModel"):
+        Monitor(formula, time_model="sampled")
+
+
+def test_a_decided_monitor_asks_for_nothing():
+    """The verdict stays whatever comes; only the order of time is looked at."""
+    monitor = Monitor(parse_formula("eventually p"))
+    monitor.step(ms(0), {"p": True})
+
+    assert monitor.step(ms(1), {}) is TRUE
+    assert text_from_formula(monitor.residual) == "true"
+    with pytest.raises(StateOrderError):
+        monitor.step(ms(1), {})

@@ -4,7 +4,7 @@ import pytest
 
 from dyknow.mtl.parser import parse_formula
 from dyknow.mtl.semantics import deciding_state, evaluate
-from dyknow.mtl.syntax import Verdict
+from dyknow.mtl.syntax import TimeModel, Verdict
 
 TRUE, FALSE, UNDECIDED = Verdict.TRUE, Verdict.FALSE, Verdict.UNDECIDED
 
@@ -65,3 +65,25 @@ def test_quantifiers_have_no_meaning_without_domains():
     """Quantifiers are expanded before a formula is evaluated."""
     with pytest.raises(ValueError, match="use expand first"):
         evaluate(parse_formula("exists x in Car (p)"), trace((0, "p")))
+
+
+@pytest.mark.parametrize(
+    ("text", "states", "verdict", "state"),
+    [
+        ("always [0, 5 ns] p", [(0, "p"), (4, "p"), (9, "")], TRUE, 2),
+        ("always [1 ns, 3 ns] false", [(0, ""), (4, "")], TRUE, 1),
+        ("always [1 ns, 3 ns] false", [(0, ""), (3, "")], FALSE, 1),
+        ("eventually [1 ns, 3 ns] true", [(0, ""), (4, "")], FALSE, 1),
+        ("eventually [3 ns, 5 ns] p", [(0, ""), (2, "p"), (4, "")], UNDECIDED, None),
+        ("eventually [3 ns, 5 ns] p", [(0, ""), (2, "p"), (6, "p")], FALSE, 2),
+        ("eventually [3 ns, 5 ns] p", [(0, ""), (5, "p")], TRUE, 1),
+        ("p until [2 ns, 9 ns] q", [(0, "p"), (1, "q"), (4, "q")], FALSE, 1),
+        ("p until [2 ns, 9 ns] q", [(0, "p"), (1, "p"), (4, "q")], TRUE, 2),
+        ("always p", [(0, "p"), (9, "p")], UNDECIDED, None),
+        ("eventually [0, 5 ns] always [0, 2 ns] p", [(0, ""), (5, "p"), (8, "")], TRUE, 2),
+    ],
+)
+def test_between_points_there_is_nothing(text, states, verdict, state):
+    """In the time model of points an interval holds the time-points of states alone."""
+    found = deciding_state(parse_formula(text), trace(*states), TimeModel.POINTS)
+    assert found == (verdict, state)
