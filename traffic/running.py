@@ -16,6 +16,7 @@ from dyknow.kpl.syntax import Specification
 from dyknow.runtime.clock import WallClock
 from dyknow.runtime.failures import Failure
 from dyknow.runtime.kernel import Kernel
+from dyknow.runtime.names import input_name
 from dyknow.runtime.subscriptions import StreamViolation
 from dyknow.service.governor import GovernorSettings, LoadGovernor
 from dyknow.streams.sample import Sample
@@ -239,7 +240,7 @@ class Watch:
 def _name_of(violation: StreamViolation) -> str:
     """Return what a stream is called: an input by its number, an output by its provider."""
     if violation.number:
-        return f"{violation.receiver}/{violation.number}"
+        return input_name(violation.receiver, violation.number)
     if violation.receiver == violation.provider:
         return violation.receiver
     return f"{violation.provider} for {violation.receiver}"

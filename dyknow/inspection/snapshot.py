@@ -15,6 +15,7 @@ from typing import Final, TypeVar
 
 from pydantic import TypeAdapter, ValidationError
 
+from dyknow.runtime.names import input_name, output_name
 from dyknow.runtime.statistics import Statistics
 from dyknow.time import SECOND, Duration, TimePoint
 
@@ -131,7 +132,9 @@ class StreamFigures:
     @property
     def name(self) -> str:
         """What recordings call the stream, such as `cars/1` or `output/cars`."""
-        return f"output/{self.receiver}" if self.is_output else f"{self.receiver}/{self.number}"
+        if self.is_output:
+            return output_name(self.receiver)
+        return input_name(self.receiver, self.number)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

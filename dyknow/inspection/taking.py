@@ -14,7 +14,8 @@ from dyknow.inspection.snapshot import Kind, ProcessFigures, Snapshot, StreamFig
 from dyknow.kpl.description import GeneratorDescription, NetworkDescription
 from dyknow.kpl.network import Network
 from dyknow.kpl.policies import text_from_policy
-from dyknow.runtime.kernel import OUTPUT, Kernel
+from dyknow.runtime.kernel import Kernel
+from dyknow.runtime.names import OUTPUT
 from dyknow.runtime.processes import RunningProcess
 from dyknow.runtime.subscriptions import StreamProxy
 

@@ -10,7 +10,6 @@ from dataclasses import dataclass, replace
 from functools import partial
 from typing import Protocol
 
-from dyknow.judging.declared import OUTPUT
 from dyknow.judging.recomputing import Recorded
 from dyknow.judging.streams import KnownStreams
 from dyknow.kpl.names import descendants
@@ -32,7 +31,8 @@ from dyknow.kpl.syntax import (
     StreamDeclaration,
     StreamTerm,
 )
-from dyknow.runtime import generators
+from dyknow.runtime import names
+from dyknow.runtime.names import OUTPUT, input_name, output_name
 from dyknow.runtime.subscriptions import StreamProxy, StreamViolation
 from dyknow.streams.policy import Policy
 from dyknow.streams.process import Element, Source
@@ -77,7 +77,7 @@ class Changing:
 
     make: MakeNetwork
     specification: Specification
-    promises: Mapping[generators.Label, Policy]
+    promises: Mapping[names.Label, Policy]
     static: Collection[str]
 
     @property
@@ -100,7 +100,7 @@ class Changing:
         specification, sources, added = self._fed(streams)
         network = self.make(specification, sources, added)
         network.kernel.subscribe_violations(violations.append)
-        others = {f"{OUTPUT}/{name}" for name in added}
+        others = set(map(output_name, added))
         watch = _Watch(network, others.union(self.static), receive)
         watch.refresh()
         network.subscribe_changes(lambda _: watch.refresh())
@@ -112,7 +112,7 @@ class Changing:
             return False  # other outputs have no receivers here
         if violation.provider == violation.receiver:
             return violation.provider in self.static
-        return f"{violation.receiver}/{violation.number}" in self.static
+        return input_name(violation.receiver, violation.number) in self.static
 
     def _fed(self, streams: KnownStreams) -> tuple[Specification, Sources, list[str]]:
         """Return the specification with recorded streams in place of what lies outside.
@@ -126,7 +126,7 @@ class Changing:
             if not isinstance(each, GeneratorDeclaration) or each.label.text not in self.promises:
                 declarations.append(each)
                 continue
-            label = generators.Label(each.label.text)
+            label = names.Label(each.label.text)
             if label in streams and not _is_mediated(each):
                 symbol = Name(f"recorded {label}")
                 declarations.append(SourceDeclaration(Sort(ANY_SORT), symbol))
@@ -156,7 +156,7 @@ class _Watch:
                 take = partial(self._receive, label)
                 generator.connect(self, take, take)
         for proxy in kernel.streams:
-            topic = f"{proxy.receiver}/{proxy.number}"
+            topic = input_name(proxy.receiver, proxy.number)
             if proxy.number and self._is_new(topic, proxy):
                 take = partial(self._receive, topic)
                 proxy.tap(take, take)
@@ -164,7 +164,7 @@ class _Watch:
             self._watch_output(name)
 
     def _watch_output(self, name: str) -> None:
-        topic = f"{OUTPUT}/{name}"
+        topic = output_name(name)
         known = self._known.get(topic)
         has_ended = isinstance(known, StreamProxy) and known.has_ended
         if topic not in self._others and (known is None or has_ended):

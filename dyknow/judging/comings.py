@@ -4,11 +4,12 @@ from collections.abc import Iterator
 
 from dyknow.errors import ProcessError
 from dyknow.judging.comparing import Comparison
-from dyknow.judging.declared import OUTPUT, ChangingPart, DeclaredNetwork
+from dyknow.judging.declared import ChangingPart, DeclaredNetwork
 from dyknow.judging.judgement import NOT_RECORDED, Basis, Breach, Definition, Draft, Finding
 from dyknow.judging.published import PublishedViolations
 from dyknow.judging.streams import KnownStreams
 from dyknow.judging.wellformed import heartbeat_breaches, order_breaches
+from dyknow.runtime.names import output_name
 from dyknow.streams.process import Element
 from dyknow.streams.sample import Sample
 
@@ -85,7 +86,7 @@ class _Rerun:
 
 def _definition(topic: str, streams: KnownStreams) -> Definition:
     """Return by which definition a stream is as it should be; its name shows what it is."""
-    if topic.startswith(f"{OUTPUT}/"):
+    if topic.startswith(output_name("")):
         return Definition.STREAM
     label, slash, number = topic.rpartition("/")
     is_input = bool(slash) and number.isdecimal() and label in streams

@@ -7,25 +7,13 @@ from typing import Protocol
 from dyknow.judging.sorts import SortTest
 from dyknow.judging.streams import KnownStreams
 from dyknow.runtime.failures import OnFailure
-from dyknow.runtime.generators import Label
+from dyknow.runtime.generators import ANYTHING
+from dyknow.runtime.names import OUTPUT, Label, input_name, output_name
 from dyknow.runtime.subscriptions import StreamViolation
 from dyknow.streams.policy import Policy
 from dyknow.streams.process import ComputationalUnit, Element, Source
 
-__all__ = [
-    "ANYTHING",
-    "OUTPUT",
-    "ChangingPart",
-    "DeclaredNetwork",
-    "DeclaredProcess",
-    "DeclaredStream",
-]
-
-OUTPUT = Label("output")
-"""The receiver of all output streams."""
-
-ANYTHING = Policy()
-"""The policy that restricts nothing."""
+__all__ = ["ChangingPart", "DeclaredNetwork", "DeclaredProcess", "DeclaredStream"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -51,12 +39,12 @@ class DeclaredStream:
         cls, receiver: Label, number: int, provider: Label, policy: Policy
     ) -> "DeclaredStream":
         """Return an input stream of a process."""
-        return cls(f"{receiver}/{number}", provider, policy, receiver, number)
+        return cls(input_name(receiver, number), provider, policy, receiver, number)
 
     @classmethod
     def output(cls, name: str, provider: Label, policy: Policy) -> "DeclaredStream":
         """Return an output stream of the application."""
-        return cls(f"{OUTPUT}/{name}", provider, policy, OUTPUT, 0)
+        return cls(output_name(name), provider, policy, OUTPUT, 0)
 
     @property
     def is_output(self) -> bool:

@@ -9,10 +9,10 @@ was not recorded either, the provider is run as well.
 from collections.abc import Callable, Collection, Iterator
 from typing import Any
 
-from dyknow.judging.declared import ANYTHING, DeclaredNetwork, DeclaredProcess, DeclaredStream
+from dyknow.judging.declared import DeclaredNetwork, DeclaredProcess, DeclaredStream
 from dyknow.judging.judgement import Basis
 from dyknow.judging.streams import KnownStreams
-from dyknow.runtime.generators import Label
+from dyknow.runtime.generators import ANYTHING, Label
 from dyknow.runtime.kernel import Kernel
 from dyknow.runtime.subscriptions import StreamViolation
 from dyknow.streams.policy import Policy

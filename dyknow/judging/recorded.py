@@ -3,10 +3,10 @@
 import json
 from collections.abc import Collection, Iterator, Sequence
 
-from dyknow.judging.declared import OUTPUT
 from dyknow.kpl.description import NetworkDescription
 from dyknow.recordings.channels import ChannelRole
 from dyknow.recordings.recording import Recording
+from dyknow.runtime.names import input_name, output_name
 from dyknow.runtime.subscriptions import StreamViolation
 from dyknow.streams.process import Element
 from dyknow.time import TimePoint
@@ -83,9 +83,9 @@ def _existing(network: str | None) -> frozenset[str] | None:
     description: NetworkDescription = json.loads(network)
     labels = [each["label"] for each in description["generators"]]
     inputs = [
-        f"{each['label']}/{stream['number']}"
+        input_name(each["label"], stream["number"])
         for each in description["generators"]
         for stream in each["inputs"]
     ]
-    outputs = [f"{OUTPUT}/{each['name']}" for each in description["outputs"]]
+    outputs = [output_name(each["name"]) for each in description["outputs"]]
     return frozenset([*labels, *inputs, *outputs])

@@ -13,9 +13,10 @@ from collections.abc import Collection, Iterator, Sequence
 from itertools import pairwise
 from typing import Any
 
-from dyknow.judging.declared import ANYTHING, DeclaredStream
+from dyknow.judging.declared import DeclaredStream
 from dyknow.judging.judgement import Breach, Definition
 from dyknow.judging.wording import deviation, short, times
+from dyknow.runtime.generators import ANYTHING
 from dyknow.streams.approximation import extend
 from dyknow.streams.conformance import violations
 from dyknow.streams.maximality import omissions

@@ -6,13 +6,10 @@ from typing import Any
 
 from dyknow.judging.judgement import Breach, Definition
 from dyknow.judging.wording import short
-from dyknow.streams.sample import Heartbeat, Sample
-from dyknow.time import TimePoint, text_from_duration
+from dyknow.streams.sample import BEGINNING_OF_TIME, Heartbeat, Sample
+from dyknow.time import text_from_duration
 
 __all__ = ["heartbeat_breaches", "order_breaches", "sort_breaches"]
-
-NEVER = TimePoint(-(1 << 63))
-"""Earlier than every valid time, also of what is dated back to before the beginning."""
 
 
 def order_breaches(topic: str, samples: Sequence[Sample[Any]]) -> Iterator[Breach]:
@@ -43,7 +40,7 @@ def heartbeat_breaches(
     topic: str, samples: Sequence[Sample[Any]], heartbeats: Sequence[Heartbeat]
 ) -> Iterator[Breach]:
     """Yield the samples that an earlier heartbeat has ruled out."""
-    at, until = 0, NEVER
+    at, until = 0, BEGINNING_OF_TIME
     for sample in samples:
         while at < len(heartbeats) and heartbeats[at].available_time < sample.available_time:
             until = max(until, heartbeats[at].until)

@@ -7,6 +7,7 @@ from typing import Any, Protocol
 from dyknow.recordings.taps import GeneratorTap, StreamTap
 from dyknow.runtime.generators import Label, Receive, StreamGenerator
 from dyknow.runtime.kernel import Kernel
+from dyknow.runtime.names import input_name, output_name
 from dyknow.runtime.subscriptions import StreamProxy, StreamViolation
 
 __all__ = ["Attachment", "DeclaredNetwork", "Taps", "Wanted"]
@@ -89,7 +90,7 @@ class Attachment:
                 self._tap_generator(label, about.generator(label))
         for proxy in self._kernel.streams:
             if proxy.number and proxy.provider in self._generators:
-                topic = f"{proxy.receiver}/{proxy.number}"
+                topic = input_name(proxy.receiver, proxy.number)
                 self._tap_stream(topic, proxy, about.input(proxy.receiver, proxy.number))
         for name in self._network.outputs if self._network is not None else ():
             self._tap_output(name, about.output(name))
@@ -120,7 +121,7 @@ class Attachment:
             self._streams[topic] = (tap, proxy)
 
     def _tap_output(self, name: str, about: Mapping[str, str]) -> None:
-        topic = f"output/{name}"
+        topic = output_name(name)
         _, known = self._streams.get(topic, (None, None))
         is_recorded = about.get("provider") in self._generators
         if self._network is not None and is_recorded and (known is None or known.has_ended):

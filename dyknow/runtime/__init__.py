@@ -3,6 +3,7 @@
 Read in this order:
 
 - `statistics`: figures about a stream; `accounts`: what a process costs and gives
+- `names`: what generators and streams are called
 - `cache`: the last samples of a stream and the questions that can be asked of them
 - `agenda`: what is to happen when; `changes`: when the network may be changed
 - `generators`: where the samples of a process come out

@@ -5,14 +5,14 @@ from dataclasses import dataclass
 from typing import Any, Protocol
 
 from dyknow.errors import PolicyNotSupportedError
-from dyknow.runtime.cache import NEVER, CachedStream
+from dyknow.runtime.cache import CachedStream
 from dyknow.runtime.generators import StreamGenerator
 from dyknow.runtime.statistics import Figures
 from dyknow.streams.adapter import Adapter, adapter_for
 from dyknow.streams.ordering import Filter
 from dyknow.streams.policy import Approximation, Policy
 from dyknow.streams.process import Element
-from dyknow.streams.sample import END_OF_TIME, Heartbeat, Sample
+from dyknow.streams.sample import BEGINNING_OF_TIME, END_OF_TIME, Heartbeat, Sample
 from dyknow.time import TimePoint, text_from_duration
 
 __all__ = ["Beginning", "Begun", "beginning", "check_past", "continuation"]
@@ -94,7 +94,7 @@ def continuation(
     last = coming[-1] if coming else other.last
     unsettled = [*other.held, *other.older]
     if policy.approximation is Approximation.MOST_RECENT:
-        after = NEVER if last is None else TimePoint(last.valid_time + 1)
+        after = BEGINNING_OF_TIME if last is None else TimePoint(last.valid_time + 1)
         earliest = _earliest(max(policy.first, after), policy, begin)
         adapter = _adapter(policy, TimePoint(earliest + (policy.max_delay or 0)))
         _let_know_value(adapter, policy, generator, earliest)
@@ -122,7 +122,7 @@ def _earliest(wanted: TimePoint, policy: Policy, begin: TimePoint) -> TimePoint:
 def _promise(generator: StreamGenerator, begin: TimePoint) -> list[Heartbeat]:
     """Return the last heartbeat once more, if there was one."""
     until = generator.complete_until
-    return [] if until == NEVER else [Heartbeat(until, begin)]
+    return [] if until == BEGINNING_OF_TIME else [Heartbeat(until, begin)]
 
 
 def _known_from(

@@ -7,19 +7,14 @@ times looks at every sample that is held.
 
 from collections import deque
 from collections.abc import Sequence
-from typing import Any, NewType
+from typing import Any
 
 from dyknow.errors import ValueNotAvailableError
-from dyknow.streams.sample import Sample
+from dyknow.runtime.names import Label
+from dyknow.streams.sample import BEGINNING_OF_TIME, Sample
 from dyknow.time import TimePoint, text_from_duration
 
-__all__ = ["CACHE_SIZE", "NEVER", "CachedStream", "Label"]
-
-Label = NewType("Label", str)
-"""The name of a stream generator as KPL writes it, such as `cars` or `percepts[vision]`."""
-
-NEVER = TimePoint(-(1 << 63))
-"""Earlier than every valid time."""
+__all__ = ["CACHE_SIZE", "CachedStream"]
 
 CACHE_SIZE = 8
 """How many samples are held where nobody says otherwise: few, since a sample may be an image."""
@@ -39,7 +34,7 @@ class CachedStream:
         """Hold up to *capacity* samples."""
         self.label = label
         self._cache: deque[Sample[Any]] = deque(maxlen=_checked(capacity))
-        self.lost_until = NEVER
+        self.lost_until = BEGINNING_OF_TIME
 
     @property
     def size(self) -> int:

@@ -27,11 +27,6 @@ class Changes:
         self._is_working = False
         self._waiting: deque[Callable[[], object]] = deque()
 
-    @property
-    def is_working(self) -> bool:
-        """Whether an instant is being worked on."""
-        return self._is_working
-
     def make(self, change: Callable[[], object]) -> None:
         """Make a change now, or when the work of the current instant is done."""
         if self._is_working:

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 from enum import Enum
 from typing import Any
 
-from dyknow.runtime.cache import Label
+from dyknow.runtime.names import Label
 from dyknow.streams.sample import NO_SAMPLE, Sample
 from dyknow.time import TimePoint, text_from_duration
 

@@ -6,11 +6,12 @@ from typing import Any
 
 from dyknow.runtime.accounts import Account
 from dyknow.runtime.agenda import Agenda
-from dyknow.runtime.cache import CACHE_SIZE, NEVER, CachedStream, Label
+from dyknow.runtime.cache import CACHE_SIZE, CachedStream
+from dyknow.runtime.names import Label
 from dyknow.runtime.statistics import Delays, Statistics
 from dyknow.streams.policy import Policy
 from dyknow.streams.process import Element
-from dyknow.streams.sample import Heartbeat, Sample
+from dyknow.streams.sample import BEGINNING_OF_TIME, Heartbeat, Sample
 from dyknow.time import TimePoint, text_from_duration
 
 __all__ = ["ANYTHING", "Beat", "Label", "Receive", "StreamGenerator"]
@@ -40,7 +41,7 @@ class StreamGenerator(CachedStream):
         delays: The delays of all samples that have become available.
         first: The valid time of the first sample that became available.
         complete_until: The valid time up to which its last heartbeat that became available
-            promises no more samples; `NEVER` without one.
+            promises no more samples; `BEGINNING_OF_TIME` without one.
         last: The last sample that has become available.
         heartbeats: How many heartbeats have become available.
         is_waiting: Whether there are samples that are not available yet.
@@ -83,8 +84,8 @@ class StreamGenerator(CachedStream):
         self.last: Sample[Any] | None = None
         self._agenda = agenda
         self._last_time = TimePoint(-1)
-        self.complete_until = NEVER
-        self._promised = NEVER
+        self.complete_until = BEGINNING_OF_TIME
+        self._promised = BEGINNING_OF_TIME
         self._receivers: dict[object, Receive] = {}
         self._beats: dict[object, Beat] = {}
         self._waiting: deque[Element] = deque()
@@ -97,7 +98,7 @@ class StreamGenerator(CachedStream):
     @property
     def is_fresh(self) -> bool:
         """Whether nothing has been handed out or promised yet."""
-        return self.last is None and self.complete_until == NEVER
+        return self.last is None and self.complete_until == BEGINNING_OF_TIME
 
     @property
     def statistics(self) -> Statistics:
@@ -113,11 +114,6 @@ class StreamGenerator(CachedStream):
     def late(self) -> int:
         """How many samples were left out: none."""
         return 0
-
-    @property
-    def n_receivers(self) -> int:
-        """To how many different places each sample is handed."""
-        return len(self._receivers)
 
     def connect(self, key: object, receive: Receive, beat: Beat | None = None) -> None:
         """Hand all samples from now on to *receive*, and heartbeats to *beat*, if there is one.

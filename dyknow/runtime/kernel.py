@@ -26,7 +26,8 @@ from dyknow.runtime.agenda import Agenda
 from dyknow.runtime.changes import Changes
 from dyknow.runtime.clock import Clock, VirtualClock
 from dyknow.runtime.failures import Failure, OnFailure
-from dyknow.runtime.generators import ANYTHING, Beat, Label, Receive, StreamGenerator
+from dyknow.runtime.generators import ANYTHING, Beat, Receive, StreamGenerator
+from dyknow.runtime.names import OUTPUT, Label
 from dyknow.runtime.processes import (
     RunningProcess,
     RunningSource,
@@ -49,9 +50,6 @@ __all__ = ["Kernel"]
 
 Input = tuple[Label, Policy]
 """A stream as a process asks for it: the generator's label and a policy."""
-
-OUTPUT = Label("output")
-"""The receiver of a subscription from outside, where nobody says otherwise."""
 
 
 class Kernel:

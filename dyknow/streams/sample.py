@@ -11,7 +11,15 @@ from typing import Final, Generic, TypeVar, final
 
 from dyknow.time import Duration, TimePoint
 
-__all__ = ["END_OF_TIME", "NO_SAMPLE", "NO_VALUE", "Heartbeat", "NoValue", "Sample"]
+__all__ = [
+    "BEGINNING_OF_TIME",
+    "END_OF_TIME",
+    "NO_SAMPLE",
+    "NO_VALUE",
+    "Heartbeat",
+    "NoValue",
+    "Sample",
+]
 
 T = TypeVar("T")
 
@@ -57,6 +65,9 @@ class Sample(Generic[T]):
     def __deepcopy__(self, memo: object) -> "Sample[T]":
         return self
 
+
+BEGINNING_OF_TIME: Final = TimePoint(-(1 << 63))
+"""Earlier than every valid time, also of what is dated back to before the run."""
 
 END_OF_TIME: Final = TimePoint((1 << 63) - 1)
 """Later than every valid time: a heartbeat until then says that a stream has ended."""

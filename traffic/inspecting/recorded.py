@@ -21,7 +21,7 @@ from dyknow.recordings.channels import HEAD, HEARTBEAT
 from dyknow.recordings.messages import times_of
 from dyknow.recordings.recording import Recording, open_recording
 from dyknow.recordings.violations import VIOLATIONS
-from dyknow.runtime.kernel import OUTPUT
+from dyknow.runtime.names import OUTPUT, input_name, output_name
 from dyknow.runtime.statistics import Delays, Statistics
 from dyknow.streams.sample import NO_VALUE, Sample
 from dyknow.time import TimePoint
@@ -103,7 +103,7 @@ def _count_violations(
         return
     outputs: dict[str, list[str]] = {}
     for output in described["outputs"]:
-        outputs.setdefault(output["provider"], []).append(f"output/{output['name']}")
+        outputs.setdefault(output["provider"], []).append(output_name(output["name"]))
     for sample in recording.samples(VIOLATIONS):
         for topic in _topics_of(sample.value, outputs):
             if topic in counts:
@@ -113,7 +113,7 @@ def _count_violations(
 
 def _topics_of(told: Mapping[str, Any], outputs: Mapping[str, list[str]]) -> list[str]:
     if told["number"]:
-        return [f"{told['receiver']}/{told['number']}"]
+        return [input_name(told["receiver"], told["number"])]
     return outputs.get(told["provider"], []) if told["receiver"] == OUTPUT else [told["receiver"]]
 
 
@@ -141,7 +141,7 @@ def _process(
 ) -> ProcessFigures:
     label = described["label"]
     figures = counts.get(label, _Counts()).statistics
-    inputs = [counts.get(f"{label}/{each['number']}") for each in described["inputs"]]
+    inputs = [counts.get(input_name(label, each["number"])) for each in described["inputs"]]
     own = figures.violations
     return ProcessFigures(
         label=label,
@@ -162,11 +162,11 @@ def _input(
     receiver: str, described: InputDescription, counts: Mapping[str, _Counts]
 ) -> StreamFigures:
     number = described["number"]
-    figures = counts.get(f"{receiver}/{number}", _Counts()).statistics
+    figures = counts.get(input_name(receiver, number), _Counts()).statistics
     return StreamFigures.of(described["provider"], receiver, number, described["policy"], figures)
 
 
 def _output(described: OutputDescription, counts: Mapping[str, _Counts]) -> StreamFigures:
     name = described["name"]
-    figures = counts.get(f"output/{name}", _Counts()).statistics
+    figures = counts.get(output_name(name), _Counts()).statistics
     return StreamFigures.of(described["provider"], name, 0, described["policy"], figures)
