@@ -3,13 +3,30 @@
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
-from chronicles.constraints import Bound, TemporalNetwork, bounds_of
+from chronicles.conditions import (
+    contradictory_conditions,
+    holds,
+    members_of,
+    parts_of,
+    references_of,
+    variables_in,
+)
+from chronicles.constraints import bounds_of
 from chronicles.errors import (
     ChronicleError,
     InconsistentConstraintsError,
+    RecursionInChroniclesError,
     UnboundInstantError,
     UnboundVariableError,
     ValueOutsideDomainError,
+)
+from chronicles.expansion import (
+    END,
+    START,
+    Expansion,
+    expand,
+    instants_of,
+    statements_used,
 )
 from chronicles.printer import text_of
 from chronicles.syntax import (
@@ -17,30 +34,33 @@ from chronicles.syntax import (
     AttributeDeclaration,
     Chronicle,
     ChronicleFile,
-    Comparison,
-    Difference,
+    Condition,
+    ConstraintDeclaration,
     Domain,
     DomainDeclaration,
     EventAt,
     EventType,
-    Instant,
+    Inclusion,
     Membership,
     MessageDeclaration,
+    NamedConstraint,
     NoEvent,
     Occurs,
     Parameter,
-    Relation,
     ReportAll,
     ReportNonOverlapping,
+    Star,
     TemporalConstraint,
     Value,
-    ValueSet,
     Variable,
-    Within,
+    VariableDeclaration,
+    stars_of,
     variables_of,
 )
+from chronicles.timing import timing_of
 from dyknow.errors import (
     ArityError,
+    CircularDefinitionError,
     DuplicateNameError,
     SpecificationError,
     SpecificationErrors,
@@ -48,7 +68,7 @@ from dyknow.errors import (
 )
 from dyknow.source_text import Span, nearest_name
 
-__all__ = ["check", "domain_values", "faults"]
+__all__ = ["check", "faults"]
 
 
 def check(file: ChronicleFile) -> None:
@@ -67,49 +87,135 @@ def faults(file: ChronicleFile) -> list[SpecificationError]:
     declared = _Declared.of(file)
     found = [
         *_faults_of_names("domain", file.domains),
+        *_faults_of_names("constraint", file.constraints),
         *_faults_of_names("attribute or message", file.signals),
         *_faults_of_names("chronicle", file.chronicles),
+        *_faults_of_domains(file.domains, declared),
+        *_circles(file),
     ]
+    for constraint in file.constraints:
+        found.extend(_faults_of_constraint(constraint, declared))
     for signal in file.signals:
         found.extend(_faults_of_signal(signal, declared))
     for chronicle in file.chronicles:
-        found.extend(_faults_of_chronicle(chronicle, declared))
+        found.extend(_faults_of_chronicle(chronicle, file, declared))
     return sorted(found, key=lambda fault: (fault.span.start, fault.span.end))
 
 
-def domain_values(domain: Domain, domains: Mapping[str, ValueSet]) -> frozenset[str]:
-    """Return the members of *domain*, looking names up in *domains*."""
-    value_set = domain if isinstance(domain, ValueSet) else domains[domain.name]
-    return frozenset(value_set.values)
-
-
-Named = Chronicle | AttributeDeclaration | MessageDeclaration
+Named = Chronicle | ConstraintDeclaration | AttributeDeclaration | MessageDeclaration
+Signal = AttributeDeclaration | MessageDeclaration | Chronicle
 
 
 @dataclass(frozen=True)
 class _Declared:
     """What a file declares, by name."""
 
-    domains: Mapping[str, ValueSet]
+    domains: Mapping[str, Domain]
+    constraints: Mapping[str, ConstraintDeclaration]
     signals: Mapping[str, AttributeDeclaration | MessageDeclaration]
+    chronicles: Mapping[str, Chronicle]
 
     @staticmethod
     def of(file: ChronicleFile) -> "_Declared":
         return _Declared(
-            {declaration.name: declaration.domain for declaration in file.domains},
+            _whole_domains(file.domains),
+            {declaration.name: declaration for declaration in reversed(file.constraints)},
             {declaration.name: declaration for declaration in file.signals},
+            {chronicle.name: chronicle for chronicle in reversed(file.chronicles)},
         )
 
-    def allowed(
-        self, signal: AttributeDeclaration | MessageDeclaration, variable: str
-    ) -> frozenset[str] | None:
-        """Return the values that *variable* may take in *signal*; None if any."""
-        for membership in signal.memberships:
-            domain = membership.domain
-            is_known = isinstance(domain, ValueSet) or domain.name in self.domains
-            if membership.variable.name == variable and is_known:
-                return domain_values(domain, self.domains)
-        return None
+    def allowed(self, signal: Signal, parameter: str) -> Callable[[str], bool]:
+        """Return what tells whether a value may stand for *parameter* in *signal*."""
+        conditions = [
+            condition
+            for condition in getattr(signal, "conditions", ())
+            if {variable.name for variable in variables_in(condition)} == {parameter}
+            and self.knows_domains_of(condition)
+        ]
+        return lambda value: all(
+            holds(condition, {parameter: value}, self.domains) for condition in conditions
+        )
+
+    def listed(self, signal: Signal, parameter: str) -> Iterator[str]:
+        """Yield the values that are written down for *parameter* in *signal*."""
+        for condition in getattr(signal, "conditions", ()):
+            is_membership = isinstance(condition, Membership)
+            if is_membership and self.knows_domains_of(condition):
+                if condition.variable.name == parameter:
+                    yield from sorted(members_of(condition.domain, self.domains).values)
+
+    def knows_domains_of(self, condition: Condition) -> bool:
+        """Return whether every domain in *condition* is known."""
+        parts = [part for part in parts_of(condition) if isinstance(part, Membership)]
+        names = [ref.name for part in parts for ref in references_of(part.domain)]
+        return all(name in self.domains for name in names)
+
+
+def _whole_domains(declarations: Sequence[DomainDeclaration]) -> dict[str, Domain]:
+    """Return the domains that can be worked out, by name: no circle, no unknown name."""
+    waiting = {declaration.name: declaration.domain for declaration in declarations}
+    whole: dict[str, Domain] = {}
+    while True:
+        ready = [n for n, d in waiting.items() if all(r.name in whole for r in references_of(d))]
+        if not ready:
+            return whole
+        for name in ready:
+            whole[name] = waiting.pop(name)
+
+
+def _faults_of_domains(
+    declarations: Sequence[DomainDeclaration], declared: _Declared
+) -> Iterator[SpecificationError]:
+    names = [declaration.name for declaration in declarations]
+    for declaration in declarations:
+        for reference in references_of(declaration.domain):
+            if reference.name not in names:
+                nearest = nearest_name(reference.name, names)
+                yield UnknownNameError("domain", reference.name, reference.span, nearest)
+    used = {d.name: [r.name for r in references_of(d.domain)] for d in declarations}
+    for declaration in declarations:
+        circle = _circle(declaration.name, used)
+        if circle and declaration.name == min(circle):
+            yield CircularDefinitionError(circle, declaration.span)
+
+
+def _circle(name: str, used: Mapping[str, Sequence[str]]) -> list[str]:
+    """Return the shortest way from *name* to itself; empty if there is none."""
+    ways = [[name]]
+    seen: set[str] = set()
+    for way in ways:
+        for following in used.get(way[-1], ()):
+            if following == name:
+                return [*way, name]
+            if following not in seen:
+                seen.add(following)
+                ways.append([*way, following])
+    return []
+
+
+def _circles(file: ChronicleFile) -> Iterator[SpecificationError]:
+    """Yield the chronicles and constraints that are made of themselves."""
+    chronicles = {chronicle.name for chronicle in file.chronicles}
+    signals = {signal.name for signal in file.signals}
+    used: dict[str, list[str]] = {}
+    for chronicle in file.chronicles:
+        names = [u.name for u in statements_used(chronicle) if isinstance(u, Inclusion)]
+        types = [_event_type(statement) for statement in chronicle.statements]
+        events = {t.name for t in types if t is not None} - signals
+        used.setdefault(chronicle.name, [*names, *sorted(events & chronicles)])
+    for chronicle in file.chronicles:
+        circle = _circle(chronicle.name, used)
+        if circle and chronicle.name == min(circle):
+            yield RecursionInChroniclesError(circle, chronicle.span)
+    used = {c.name: [u.name for u in statements_used(c)] for c in file.constraints}
+    for constraint in file.constraints:
+        circle = _circle(constraint.name, used)
+        if circle and constraint.name == min(circle):
+            yield RecursionInChroniclesError(circle, constraint.span)
+
+
+def _event_type(statement: object) -> EventType | None:
+    return statement.event_type if isinstance(statement, EventAt | NoEvent | Occurs) else None
 
 
 def _faults_of_names(
@@ -135,15 +241,34 @@ def _faults_of_parameters(node: Named) -> Iterator[SpecificationError]:
         first.setdefault(parameter.name, parameter.span)
 
 
-def _reserved_value(variable: Variable) -> ChronicleError:
+def _reserved_value(variable: Variable | Star) -> ChronicleError:
     message = f"'{VALUE_VARIABLE}' stands for the value of an attribute and is no parameter"
     return ChronicleError(message, variable.span)
 
 
 def _faults_of_domain(domain: Domain, declared: _Declared) -> Iterator[SpecificationError]:
-    if not isinstance(domain, ValueSet) and domain.name not in declared.domains:
-        nearest = nearest_name(domain.name, declared.domains)
-        yield UnknownNameError("domain", domain.name, domain.span, nearest)
+    for reference in references_of(domain):
+        if reference.name not in declared.domains:
+            nearest = nearest_name(reference.name, declared.domains)
+            yield UnknownNameError("domain", reference.name, reference.span, nearest)
+
+
+def _faults_of_condition(
+    condition: Condition, known: Sequence[str], declared: _Declared
+) -> Iterator[SpecificationError]:
+    for variable in variables_in(condition):
+        if variable.name not in known:
+            nearest = nearest_name(variable.name, known)
+            yield UnknownNameError("parameter", variable.name, variable.span, nearest)
+    yield from _faults_of_domains_in(condition, declared)
+
+
+def _faults_of_domains_in(
+    condition: Condition, declared: _Declared
+) -> Iterator[SpecificationError]:
+    for part in parts_of(condition):
+        if isinstance(part, Membership):
+            yield from _faults_of_domain(part.domain, declared)
 
 
 def _faults_of_signal(
@@ -153,81 +278,185 @@ def _faults_of_signal(
     known = [parameter.name for parameter in signal.parameters]
     if isinstance(signal, AttributeDeclaration):
         known.append(VALUE_VARIABLE)
-    for membership in signal.memberships:
-        variable = membership.variable
-        if variable.name not in known:
-            nearest = nearest_name(variable.name, known)
-            yield UnknownNameError("parameter", variable.name, variable.span, nearest)
-        yield from _faults_of_domain(membership.domain, declared)
+    for condition in signal.conditions:
+        yield from _faults_of_condition(condition, known, declared)
+
+
+def _faults_of_constraint(
+    constraint: ConstraintDeclaration, declared: _Declared
+) -> Iterator[SpecificationError]:
+    yield from _faults_of_parameters(constraint)
+    yield from _duplicates_among("instant", constraint.instants, constraint.span)
+    variables = [parameter.name for parameter in constraint.parameters]
+    for statement in constraint.statements:
+        for name in dict.fromkeys(instants_of(statement)):
+            if name not in constraint.instants:
+                nearest = nearest_name(name, constraint.instants)
+                yield UnknownNameError("instant", name, statement.span, nearest)
+        match statement:
+            case NamedConstraint():
+                yield from _faults_of_use(statement, declared)
+            case _ if isinstance(statement, TemporalConstraint):
+                yield from _faults_of_comparison(statement)
+            case _ if isinstance(statement, Condition):
+                yield from _faults_of_condition(statement, variables, declared)
+            case _:
+                pass
+
+
+def _duplicates_among(kind: str, names: Sequence[str], span: Span) -> Iterator[SpecificationError]:
+    for name in dict.fromkeys(name for name in names if names.count(name) > 1):
+        yield DuplicateNameError(kind, name, span, span)
+
+
+def _faults_of_comparison(constraint: TemporalConstraint) -> Iterator[SpecificationError]:
+    try:
+        bounds_of(constraint)
+    except ValueError as error:
+        yield ChronicleError(f"{error}, found '{text_of(constraint)}'", constraint.span)
+
+
+def _faults_of_use(
+    use: NamedConstraint | Inclusion, declared: _Declared
+) -> Iterator[SpecificationError]:
+    is_inclusion = isinstance(use, Inclusion)
+    known = declared.chronicles if is_inclusion else declared.constraints
+    named: Chronicle | ConstraintDeclaration | None = known.get(use.name)
+    if named is None:
+        kind = "chronicle" if is_inclusion else "constraint"
+        yield UnknownNameError(kind, use.name, use.span, nearest_name(use.name, known))
+        return
+    if len(use.parameters) != len(named.parameters):
+        yield ArityError(use.name, len(named.parameters), len(use.parameters), use.span)
+    if isinstance(use, Inclusion):
+        assert isinstance(named, Chronicle)
+        yield from _faults_of_bindings(use, named)
+    elif len(use.instants) != len(named.instants):
+        yield ArityError(use.name, len(named.instants), len(use.instants), use.span)
+
+
+def _faults_of_bindings(use: Inclusion, included: Chronicle) -> Iterator[SpecificationError]:
+    labels = [binding.label for binding in use.bindings]
+    n_by_place = sum(label is None for label in labels)
+    if any(label is None for label in labels[n_by_place:]):
+        message = "expected instants without a name before those with one"
+        yield ChronicleError(message, use.span)
+    if n_by_place > len(included.instants):
+        yield ArityError(use.name, len(included.instants), n_by_place, use.span)
+    inside = {name for statement in included.statements for name in instants_of(statement)}
+    known = [*dict.fromkeys([*included.instants, *sorted(inside), START, END])]
+    names = [*included.instants[:n_by_place], *(label for label in labels if label)]
+    for name in dict.fromkeys(names):
+        if name not in known:
+            yield UnknownNameError("instant", name, use.span, nearest_name(name, known))
+    yield from _duplicates_among("instant", names, use.span)
 
 
 def _faults_of_chronicle(
+    chronicle: Chronicle, file: ChronicleFile, declared: _Declared
+) -> Iterator[SpecificationError]:
+    yield from _faults_of_statements(chronicle, declared)
+    expansion = expand(chronicle, file)
+    if not expansion.events:
+        if not any(isinstance(s, Inclusion) for s in chronicle.statements):
+            message = f"chronicle '{chronicle.name}' has no event"
+            yield ChronicleError(message, chronicle.span)
+        return
+    yield from _faults_of_parameters(chronicle)
+    yield from _faults_of_variables(chronicle, expansion)
+    yield from _faults_of_stars(expansion)
+    yield from _faults_of_time(chronicle, expansion)
+    yield from _faults_of_values_together(chronicle, expansion, declared)
+
+
+def _faults_of_statements(
     chronicle: Chronicle, declared: _Declared
 ) -> Iterator[SpecificationError]:
-    events = [s for s in chronicle.statements if isinstance(s, EventAt)]
-    if not events:
-        message = f"chronicle '{chronicle.name}' has no event"
-        yield ChronicleError(message, chronicle.span)
-        return
-    bound = {v.name for event in events for v in variables_of(event.event_type)}
-    instants = list(dict.fromkeys(event.instant for event in events))
-    yield from _faults_of_parameters(chronicle)
-    yield from _faults_of_variables(chronicle, bound)
     for statement in chronicle.statements:
+        event_type = _event_type(statement)
+        if event_type is not None:
+            yield from _faults_of_event_type(event_type, declared)
         match statement:
-            case EventAt(_, event_type, _) | NoEvent(_, event_type, _, _):
-                yield from _faults_of_event_type(event_type, declared)
-            case Occurs(_, least, most, event_type, _, _):
-                yield from _faults_of_event_type(event_type, declared)
-                if most is not None and least > most:
-                    message = f"expected at least {least} as the largest number, found {most}"
-                    yield ChronicleError(message, statement.span)
-            case Membership(_, _, domain):
+            case Occurs(_, least, most, _, _, _) if most is not None and least > most:
+                message = f"expected at least {least} as the largest number, found {most}"
+                yield ChronicleError(message, statement.span)
+            case Inclusion() | NamedConstraint():
+                yield from _faults_of_use(statement, declared)
+            case VariableDeclaration(_, _, domain) if domain is not None:
                 yield from _faults_of_domain(domain, declared)
+            case _ if isinstance(statement, TemporalConstraint):
+                yield from _faults_of_comparison(statement)
+            case _ if isinstance(statement, Condition):
+                yield from _faults_of_domains_in(statement, declared)
             case _:
                 pass
-    yield from _faults_of_time(chronicle, instants)
     reports = [s for s in chronicle.statements if isinstance(s, ReportAll | ReportNonOverlapping)]
     for report in reports[1:]:
         yield ChronicleError("expected at most one 'report' statement", report.span)
 
 
-def _faults_of_variables(chronicle: Chronicle, bound: set[str]) -> Iterator[SpecificationError]:
-    used: list[Variable] = list(chronicle.parameters)
+def _faults_of_variables(
+    chronicle: Chronicle, expansion: Expansion
+) -> Iterator[SpecificationError]:
+    bound = {v.name for event in expansion.events for v in variables_of(event.event_type)}
+    used: list[Variable | Star] = list(chronicle.parameters)
     for statement in chronicle.statements:
+        if isinstance(statement, VariableDeclaration):
+            used.extend(statement.variables)
+    for statement in expansion.statements:
         used.extend(_variables_used_by(statement))
+    told: set[Span] = set()
     for variable in used:
+        is_ours = isinstance(variable, Variable) and "." not in variable.name
         if variable.name == VALUE_VARIABLE:
             yield _reserved_value(variable)
-        elif variable.name not in bound:
-            nearest = nearest_name(variable.name, bound)
+        elif is_ours and variable.name not in bound and variable.span not in told:
+            told.add(variable.span)
+            nearest = nearest_name(variable.name, [name for name in bound if "." not in name])
             yield UnboundVariableError(variable.name, variable.span, nearest)
 
 
-def _variables_used_by(statement: object) -> Iterator[Variable]:
+def _variables_used_by(statement: object) -> Iterator[Variable | Star]:
     match statement:
         case NoEvent(_, event_type, _, _) | Occurs(_, _, _, event_type, _, _):
             yield from variables_of(event_type)
-        case Membership(_, variable, _):
-            yield variable
-        case Relation(_, variable, _, other):
-            yield variable
-            if isinstance(other, Variable):
-                yield other
-        case EventAt(_, event_type, _):
+        case EventAt(_, event_type, _, _):
             yield from (v for v in variables_of(event_type) if v.name == VALUE_VARIABLE)
+        case _ if isinstance(statement, Condition):
+            yield from variables_in(statement)
         case _:
             pass
+
+
+def _faults_of_stars(expansion: Expansion) -> Iterator[SpecificationError]:
+    """Yield the conditions on star variables that no event type can be tested for."""
+    types = [t for t in map(_event_type, expansion.statements) if t is not None]
+    groups = [{v.name for v in (*variables_of(t), *stars_of(t))} for t in types]
+    starred = {star.name for t in types for star in stars_of(t)}
+    for name, span in expansion.stars.items():
+        if name not in starred and "." not in name:
+            yield ChronicleError(f"no event type uses '{name}'", span)
+    for statement in expansion.statements:
+        if isinstance(statement, Condition):
+            variables = variables_in(statement)
+            names = {variable.name for variable in variables}
+            has_star = any(isinstance(variable, Star) for variable in variables)
+            is_ours = not any("." in name for name in names)
+            if has_star and is_ours and not any(names <= group for group in groups):
+                listed = ", ".join(f"'{name}'" for name in sorted(names))
+                message = f"expected an event type with all of {listed}, found none"
+                yield ChronicleError(message, statement.span)
 
 
 def _faults_of_event_type(
     event_type: EventType, declared: _Declared
 ) -> Iterator[SpecificationError]:
-    if not declared.signals:
+    signal: Signal | None = declared.signals.get(event_type.name)
+    signal = signal or declared.chronicles.get(event_type.name)
+    if signal is None and not declared.signals:
         return
-    signal = declared.signals.get(event_type.name)
     if signal is None:
-        nearest = nearest_name(event_type.name, declared.signals)
+        nearest = nearest_name(event_type.name, [*declared.signals, *declared.chronicles])
         span = event_type.span
         span = Span(span.source, span.start, span.start + len(event_type.name))
         yield UnknownNameError("attribute or message", event_type.name, span, nearest)
@@ -237,23 +466,14 @@ def _faults_of_event_type(
         yield ArityError(event_type.name, n_expected, n_found, event_type.span)
     yield from _faults_of_kind(signal, event_type)
     names = [parameter.name for parameter in signal.parameters]
-    yield from _faults_of_values(
-        zip(event_type.arguments, names, strict=False),
-        lambda name: declared.allowed(signal, name),
-        signal.name,
-    )
-    if event_type.change:
-        values = (event_type.change.before, event_type.change.after)
-        yield from _faults_of_values(
-            ((value, VALUE_VARIABLE) for value in values),
-            lambda name: declared.allowed(signal, name),
-            signal.name,
-        )
+    for parameter, name in zip(event_type.arguments, names, strict=False):
+        yield from _faults_of_value(parameter, name, signal, declared)
+    if event_type.change and not isinstance(signal, Chronicle):
+        for value in (event_type.change.before, event_type.change.after):
+            yield from _faults_of_value(value, VALUE_VARIABLE, signal, declared)
 
 
-def _faults_of_kind(
-    signal: AttributeDeclaration | MessageDeclaration, event_type: EventType
-) -> Iterator[SpecificationError]:
+def _faults_of_kind(signal: Signal, event_type: EventType) -> Iterator[SpecificationError]:
     if isinstance(signal, AttributeDeclaration) and event_type.change is None:
         message = f"expected ':(from, to)' behind the attribute '{signal.name}'"
         yield ChronicleError(message, event_type.span)
@@ -262,58 +482,62 @@ def _faults_of_kind(
         yield ChronicleError(message, event_type.change.span)
 
 
-def _faults_of_values(
-    parameters: Iterable[tuple[Parameter, str]],
-    allowed: Callable[[str], frozenset[str] | None],
-    signal: str,
+def _faults_of_value(
+    parameter: Parameter, name: str, signal: Signal, declared: _Declared
 ) -> Iterator[SpecificationError]:
-    for parameter, name in parameters:
-        values = allowed(name)
-        if isinstance(parameter, Value) and values is not None and parameter.text not in values:
-            nearest = nearest_name(parameter.text, sorted(values))
-            place = f"'{name}' of '{signal}'"
-            yield ValueOutsideDomainError(parameter.text, place, parameter.span, nearest)
+    if isinstance(parameter, Value) and not declared.allowed(signal, name)(parameter.text):
+        nearest = nearest_name(parameter.text, declared.listed(signal, name))
+        place = f"'{name}' of '{signal.name}'"
+        yield ValueOutsideDomainError(parameter.text, place, parameter.span, nearest)
 
 
-def _faults_of_time(chronicle: Chronicle, known: Sequence[str]) -> Iterator[SpecificationError]:
-    bounds: list[Bound] = []
-    for statement in chronicle.statements:
-        for name in _instants_used_by(statement):
-            if name not in known:
-                yield UnboundInstantError(name, statement.span, nearest_name(name, known))
-        if isinstance(statement, TemporalConstraint):
-            try:
-                bounds.extend(bounds_of(statement))
-            except ValueError as error:
-                yield ChronicleError(f"{error}, found '{text_of(statement)}'", statement.span)
-    bounds = [bound for bound in bounds if bound.later in known and bound.earlier in known]
-    contradictory = TemporalNetwork(known, bounds).contradiction()
+def _faults_of_time(chronicle: Chronicle, expansion: Expansion) -> Iterator[SpecificationError]:
+    timing = timing_of(expansion)
+    contradictory = timing.network.contradiction()
     if contradictory:
-        in_order = sorted(contradictory, key=lambda constraint: constraint.span.start)
-        texts = [text_of(constraint) for constraint in in_order]
-        yield InconsistentConstraintsError(chronicle.name, texts, in_order[0].span)
+        yield _contradiction(chronicle, contradictory)
+        known = {name for name in timing.network.instants if expansion_knows(expansion, name)}
+    else:
+        known = set(timing.places)
+    near = [name for name in known if "." not in name and " " not in name]
+    for name, span in expansion.declared.items():
+        if name not in known:
+            yield UnboundInstantError(name, span, nearest_name(name, near))
+    for statement in expansion.statements:
+        for name in dict.fromkeys(instants_of(statement)):
+            if name not in known and "." not in name:
+                yield UnboundInstantError(name, statement.span, nearest_name(name, near))
+        if isinstance(statement, ReportNonOverlapping):
+            names = [n for n in (statement.begin, statement.end) if n in timing.places]
+            for name in names:
+                if timing.places[name].offset:
+                    yield UnboundInstantError(name, statement.span)
 
 
-def _instants_used_by(statement: object) -> tuple[str, ...]:
-    match statement:
-        case NoEvent(_, _, begin, end) | Occurs(_, _, _, _, begin, end):
-            names = [begin.name, end.name]
-        case ReportNonOverlapping(_, first, last):
-            names = [first, last]
-        case Comparison(_, operands, _):
-            names = [name for operand in operands for name in _names_in(operand)]
-        case Within(_, difference, _):
-            names = list(_names_in(difference))
-        case _:
-            names = []
-    return tuple(dict.fromkeys(names))
+def _contradiction(
+    chronicle: Chronicle, contradictory: Sequence[TemporalConstraint] | Sequence[Condition]
+) -> SpecificationError:
+    in_order = sorted(contradictory, key=lambda constraint: constraint.span.start)
+    ours = chronicle.span
+    inside = [c for c in in_order if ours.start <= c.span.start < ours.end]
+    texts = list(dict.fromkeys(text_of(constraint) for constraint in in_order))
+    span = inside[0].span if inside else chronicle.span
+    return InconsistentConstraintsError(chronicle.name, texts, span)
 
 
-def _names_in(operand: object) -> tuple[str, ...]:
-    match operand:
-        case Instant(_, name, _):
-            return (name,)
-        case Difference(_, later, earlier, _):
-            return (later, earlier)
-        case _:
-            return ()
+def expansion_knows(expansion: Expansion, name: str) -> bool:
+    """Return whether *name* is the time of an event, the beginning, or the end."""
+    return name in expansion.extremes or any(e.instant == name for e in expansion.events)
+
+
+def _faults_of_values_together(
+    chronicle: Chronicle, expansion: Expansion, declared: _Declared
+) -> Iterator[SpecificationError]:
+    conditions = [
+        statement
+        for statement in expansion.statements
+        if isinstance(statement, Condition) and declared.knows_domains_of(statement)
+    ]
+    contradictory = contradictory_conditions(conditions, declared.domains)
+    if contradictory:
+        yield _contradiction(chronicle, contradictory)

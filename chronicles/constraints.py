@@ -19,6 +19,7 @@ import numpy.typing as npt
 from chronicles.syntax import (
     Comparison,
     Difference,
+    Displaced,
     Instant,
     Length,
     Operand,
@@ -30,6 +31,7 @@ from dyknow.time import MILLISECOND
 __all__ = [
     "INSTANT",
     "UNBOUNDED",
+    "ZERO",
     "Bound",
     "TemporalNetwork",
     "bounds_of",
@@ -38,6 +40,9 @@ __all__ = [
 
 INSTANT: Final = int(MILLISECOND)
 """The length of an instant, the resolution of the chronicle language, in nanoseconds."""
+
+ZERO: Final = "0"
+"""The name of the instant from which time is counted; nothing that is written has it."""
 
 UNBOUNDED: Final = 1 << 60
 """A limit that is none: 36 years in nanoseconds."""
@@ -51,13 +56,13 @@ class Bound:
         later: Name of an instant.
         earlier: Name of another instant.
         limit: Nanoseconds; may be negative.
-        constraint: What the author wrote that says so.
+        constraint: What the author wrote that says so; None if it goes without saying.
     """
 
     later: str
     earlier: str
     limit: int
-    constraint: TemporalConstraint
+    constraint: TemporalConstraint | None
 
 
 def floor_to_instant(time: int) -> int:
@@ -68,12 +73,16 @@ def floor_to_instant(time: int) -> int:
 def bounds_of(constraint: TemporalConstraint) -> tuple[Bound, ...]:
     """Return the limits that *constraint* puts on pairs of instants.
 
+    An instant that is compared with a length is compared with the instant `ZERO`.
+
     Raises:
-        ValueError: One of its comparisons is not between two different instants.
+        ValueError: One of its comparisons is not between one or two different instants.
     """
     if isinstance(constraint, Comparison):
-        return tuple(_bounds_of_comparison(constraint))
-    return tuple(_bounds_of_within(constraint))
+        found = _bounds_of_comparison(constraint)
+    else:
+        found = _bounds_of_within(constraint)
+    return tuple(bound for bound in found if bound is not None)
 
 
 class TemporalNetwork:
@@ -142,10 +151,10 @@ def _circle(start: str, reached_by: dict[str, Bound]) -> tuple[TemporalConstrain
     last = at
     while (at := reached_by[at].earlier) != last:
         constraints.append(reached_by[at].constraint)
-    return tuple(dict.fromkeys(reversed(constraints)))
+    return tuple(dict.fromkeys(c for c in reversed(constraints) if c is not None))
 
 
-def _bounds_of_comparison(comparison: Comparison) -> Iterator[Bound]:
+def _bounds_of_comparison(comparison: Comparison) -> Iterator[Bound | None]:
     pairs = zip(comparison.operands, comparison.operands[1:], comparison.orders, strict=False)
     for left, right, order in pairs:
         strictness = INSTANT if order in ("<", ">") else 0
@@ -155,7 +164,7 @@ def _bounds_of_comparison(comparison: Comparison) -> Iterator[Bound]:
             yield _at_most(right, left, strictness, comparison)
 
 
-def _bounds_of_within(within: Within) -> Iterator[Bound]:
+def _bounds_of_within(within: Within) -> Iterator[Bound | None]:
     difference, interval = within.difference, within.interval
     span = within.span
     if interval.upper is not None:
@@ -166,22 +175,26 @@ def _bounds_of_within(within: Within) -> Iterator[Bound]:
 
 def _at_most(
     left: Operand, right: Operand, strictness: int, constraint: TemporalConstraint
-) -> Bound:
-    """Return the bound that says `left + strictness <= right`."""
+) -> Bound | None:
+    """Return the bound that says `left + strictness <= right`, if it limits anything."""
     signs: dict[str, int] = {}
     for name, sign in (*_terms(left, 1), *_terms(right, -1)):
         signs[name] = signs.get(name, 0) + sign
     later = [name for name, sign in signs.items() if sign == 1]
     earlier = [name for name, sign in signs.items() if sign == -1]
-    if len(later) != 1 or len(earlier) != 1 or sum(map(abs, signs.values())) != 2:  # noqa: PLR2004
+    is_one_each = len(later) <= 1 and len(earlier) <= 1 and later != earlier
+    if not is_one_each or any(abs(sign) > 1 for sign in signs.values()):
         raise ValueError("expected a comparison of two different instants")
-    limit = _offset(right) - _offset(left) - strictness
-    return Bound(later[0], earlier[0], limit, constraint)
+    least, most = _offset(left, at_most=False), _offset(right, at_most=True)
+    if least is None or most is None:
+        return None
+    names = (*later, ZERO)[0], (*earlier, ZERO)[0]
+    return Bound(names[0], names[1], most - least - strictness, constraint)
 
 
 def _terms(operand: Operand, sign: int) -> tuple[tuple[str, int], ...]:
     match operand:
-        case Instant(_, name, _):
+        case Instant(_, name, _) | Displaced(_, name, _):
             return ((name, sign),)
         case Difference(_, later, earlier, _):
             return ((later, sign), (earlier, -sign))
@@ -189,5 +202,11 @@ def _terms(operand: Operand, sign: int) -> tuple[tuple[str, int], ...]:
             return ()
 
 
-def _offset(operand: Operand) -> int:
-    return operand.duration if isinstance(operand, Length) else operand.offset
+def _offset(operand: Operand, *, at_most: bool) -> int | None:
+    match operand:
+        case Length(_, duration):
+            return duration
+        case Displaced(_, _, interval):
+            return interval.upper if at_most else interval.lower
+        case _:
+            return operand.offset

@@ -13,6 +13,7 @@ __all__ = [
     "ChronicleError",
     "ChronicleSyntaxError",
     "InconsistentConstraintsError",
+    "RecursionInChroniclesError",
     "UnboundInstantError",
     "UnboundVariableError",
     "ValueOutsideDomainError",
@@ -34,6 +35,13 @@ class InconsistentConstraintsError(ChronicleError):
         listed = "; ".join(contradictory)
         super().__init__(f"chronicle '{chronicle}' can never be recognised: {listed}", span)
         self.contradictory = tuple(contradictory)
+
+
+class RecursionInChroniclesError(ChronicleError):
+    """A chronicle is made of itself, or a named constraint is."""
+
+    def __init__(self, names: Sequence[str], span: Span) -> None:
+        super().__init__(f"'{names[0]}' is made of itself: {' -> '.join(names)}", span)
 
 
 class UnboundInstantError(ChronicleError):

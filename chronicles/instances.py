@@ -111,15 +111,19 @@ class Stage:
         bound = {name for i in self.filled for name in slots[i].pattern.variables}
         self.variables = tuple(name for name in model.variables if name in bound)
         self.watches = tuple(
-            Watch(c, {}, key_of(self.variables, c.pattern.variables), bool(mask & 1 << c.end))
+            Watch(c, {}, key_of(self.variables, c.pattern.variables), self.knows(c.end))
             for c in model.counters
-            if mask & 1 << c.begin
+            if self.knows(c.begin)
             and bound.issuperset(c.pattern.variables)
             and (self.is_complete or c.most is not None)
         )
         self.members: Bucket = {}
         self._indexes: dict[tuple[str, ...], Index] = {}
         self._entries: list[tuple[Index, Callable[[Values], Values | str]]] = []
+
+    def knows(self, place: int) -> bool:
+        """Return whether the time at *place*, of a slot or an extreme, is known."""
+        return self.is_complete or bool(self.mask & 1 << place)
 
     def index_by(self, variables: tuple[str, ...]) -> Index:
         """Return the index of the instances by the values of *variables*.

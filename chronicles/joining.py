@@ -94,7 +94,7 @@ class Joiner:
     def _beginning(self, slot: Slot) -> Recipe:
         """Return the recipe for an event that joins nothing."""
         at, n_slots = slot.index, len(self._model.slots)
-        unlimited = [UNBOUNDED] * n_slots
+        unlimited = [other.latest for other in self._model.slots]
         reach = self._reach(slot, tuple(range(n_slots)))
         arrange = self._arrangement(slot.pattern.variables, 1 << at)
         allows = self._restriction(1 << at, ())
@@ -107,7 +107,7 @@ class Joiner:
                 return
             latest = unlimited.copy()
             for j, limit in reach:
-                latest[j] = now + limit
+                latest[j] = min(latest[j], now + limit)
             times = [0] * n_slots
             times[at] = now
             events: list[Event | None] = [None] * n_slots

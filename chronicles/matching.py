@@ -7,7 +7,7 @@ instance die when the clock has passed one of them. Without this, instances woul
 their last event comes, only to be refused.
 """
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Sequence
 
 from chronicles.constraints import INSTANT, UNBOUNDED
 from chronicles.counting import CountedEvents
@@ -74,7 +74,11 @@ class Matcher:
         """Return before which time no instance, present or future, has *offset* from *slot*."""
         earliest = clock + min(offset, 0)
         for stage in self._joiner.stages.values():
-            if stage.mask & 1 << slot:
+            if slot >= len(self.model.slots):
+                for instance in stage.members:
+                    first = min([instance.times[i] for i in stage.filled])
+                    earliest = min(earliest, first + offset)
+            elif stage.mask & 1 << slot:
                 for instance in stage.members:
                     earliest = min(earliest, instance.times[slot] + offset)
         return earliest
@@ -92,7 +96,10 @@ class Matcher:
     def _filling(self, slot: Slot) -> Handler:
         recipes = self._joiner.recipes[slot.index]
         match = slot.pattern.match
-        return _fill_once(match, recipes) if slot.pattern.loose else _fill(match, recipes)
+        fill = _fill_once(match, recipes) if slot.pattern.loose else _fill(match, recipes)
+        if slot.earliest > -UNBOUNDED or slot.latest < UNBOUNDED:
+            return _within(fill, slot.earliest, slot.latest)
+        return fill
 
     def _new_stage(self, mask: int) -> Stage:
         stage = Stage(self.model, mask, self._review)
@@ -220,7 +227,12 @@ class Matcher:
 
     def _complete(self, instance: Instance, now: int) -> None:
         """Decide about an instance all of whose slots are filled for the first time."""
-        if not self.model.counters:
+        model = self.model
+        if model.extremes:
+            instance.times += [extreme.time(instance.times) for extreme in model.extremes]
+            if not _pass(model.tests, instance.times):
+                return
+        if not model.counters:
             self._on_match(self, instance, now)
             return
         instance.stage.add(instance)
@@ -275,6 +287,12 @@ class Matcher:
         return (end, end) if n >= counter.least else never
 
 
+def _pass(tests: Iterable[tuple[int, int, int]], times: Sequence[int]) -> bool:
+    """Return whether *times* are as far apart as *tests* ask for."""
+    with_zero = [*times, 0]
+    return all(with_zero[later] - with_zero[at] <= limit for later, at, limit in tests)
+
+
 def _fill(match: Callable[[Event], Values | None], recipes: list[Recipe]) -> Handler:
     def fill(event: Event, now: int) -> None:
         values = match(event)
@@ -283,6 +301,14 @@ def _fill(match: Callable[[Event], Values | None], recipes: list[Recipe]) -> Han
                 recipe(event, now, values)
 
     return fill
+
+
+def _within(fill: Handler, earliest: int, latest: int) -> Handler:
+    def fill_within(event: Event, now: int) -> None:
+        if earliest <= now <= latest:
+            fill(event, now)
+
+    return fill_within
 
 
 def _fill_once(match: Callable[[Event], Values | None], recipes: list[Recipe]) -> Handler:

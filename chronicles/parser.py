@@ -1,18 +1,21 @@
 """From the text of a chronicle file to its syntax tree."""
 
+import re
 from collections.abc import Callable, Collection, Sequence
 from functools import cache
 from pathlib import Path
 from typing import Any
 
-from lark import Lark, Token, Transformer, v_args
+from lark import Lark, Token, Transformer, Tree, v_args
 from lark.ast_utils import create_transformer
-from lark.exceptions import UnexpectedCharacters, UnexpectedEOF, UnexpectedInput, VisitError
+from lark.exceptions import UnexpectedCharacters, UnexpectedEOF, UnexpectedInput
 from lark.tree import Meta
 
 from chronicles import syntax
 from chronicles.errors import ChronicleSyntaxError
-from chronicles.syntax import ChronicleFile
+from chronicles.recovery import MAX_DEPTH, Outline
+from chronicles.syntax import ChronicleFile, Displaced, Interval
+from dyknow.errors import SpecificationError, SpecificationErrors
 from dyknow.source_text import SourceText, Span, nearest_name
 from dyknow.time import MILLISECOND, Duration, duration_from_text
 
@@ -32,10 +35,16 @@ _TERMINALS = rf"""
 NAME: /(?!(?:{"|".join(sorted(RESERVED_WORDS))})\b)[A-Za-z_]\w*/
 VARIABLE: /\?[A-Za-z_]\w*/
 STAR: /\*[A-Za-z_]\w*/
+_UNION: "|" | /\+(?=\s*[~\u223c({{A-Za-z_])/
+_DIFFERENCE.2: "\\" | /-(?=\s*[~\u223c({{A-Za-z_])/
+_COMPLEMENT: "~" | "\u223c"
+START: "start"
+END: "end"
 DURATION: /\d{{1,18}}(?:\.\d{{1,9}})?(?![\d.])(?:[ \t]*(?:ns|us|ms|min|s|h)\b)?/
 INTEGER: /\d{{1,18}}(?!\d)/
 STRING: /"[^"\n]*"/
-ORDER: "<=" | ">=" | "<" | ">" | "="
+ORDER: "<=" | ">=" | "<" | ">"
+EQUAL: "="
 EQUALITY: "==" | "!="
 PLUS: "+"
 MINUS: "-"
@@ -54,7 +63,13 @@ _EXPECTED = {
     "INTEGER": "a number",
     "STRING": "a string",
     "ORDER": "a comparison",
+    "EQUAL": "'='",
     "EQUALITY": "'==' or '!='",
+    "_UNION": "'|'",
+    "_DIFFERENCE": "'\\'",
+    "_COMPLEMENT": "'~'",
+    "START": "'start'",
+    "END": "'end'",
     "PLUS": "'+'",
     "MINUS": "'-'",
     "LEFT": "'[' or ']'",
@@ -63,6 +78,9 @@ _EXPECTED = {
 }
 _ANY_VALUE = {"NAME", "INTEGER", "STRING"}
 _MOST_ALTERNATIVES = 8
+_MOST_FAULTS = 20
+_STARTS = frozenset({"ATTRIBUTE", "DOMAIN"})
+"""Terminals that are accepted together only between declarations."""
 _LONGEST = 1 << 58
 
 
@@ -70,7 +88,7 @@ def read_chronicles(path: Path) -> ChronicleFile:
     """Read the chronicle file at *path*, which is UTF-8.
 
     Raises:
-        ChronicleSyntaxError: The text does not follow the grammar.
+        SpecificationErrors: The text is no UTF-8 or does not follow the grammar.
     """
     name = str(path)
     try:
@@ -78,7 +96,8 @@ def read_chronicles(path: Path) -> ChronicleFile:
     except UnicodeDecodeError as error:
         place = Span(SourceText(name, ""), 0, 0)
         message = f"expected text in UTF-8, found the byte 0x{error.object[error.start]:02x}"
-        raise ChronicleSyntaxError(f"{message} at offset {error.start}", place) from error
+        fault = ChronicleSyntaxError(f"{message} at offset {error.start}", place)
+        raise SpecificationErrors("1 fault(s)", [fault]) from error
     return parse_chronicles(text, name)
 
 
@@ -86,17 +105,46 @@ def parse_chronicles(text: str, name: str = "<chronicles>") -> ChronicleFile:
     """Parse the text of a chronicle file, called *name* in messages.
 
     Raises:
-        ChronicleSyntaxError: The text does not follow the grammar.
+        SpecificationErrors: The text does not follow the grammar, in one or several places; the
+            faults are of the class `ChronicleSyntaxError`.
     """
     source = SourceText(name, text)
-    try:
-        tree = _grammar().parse(text)
-        file: ChronicleFile = _transformer(source).transform(tree)
-    except UnexpectedInput as error:
-        raise _syntax_error(source, error) from None
-    except VisitError as error:
-        raise error.orig_exc from None
-    return file
+    outline = Outline(text)
+    if outline.too_deep is not None:
+        place = Span(source, outline.too_deep, outline.too_deep + 1)
+        message = f"expected at most {MAX_DEPTH} brackets inside one another, found more"
+        raise SpecificationErrors("1 fault(s)", [ChronicleSyntaxError(message, place)])
+    tree, faults = _tree(source, outline)
+    pieces = _Pieces(source)
+    found: ChronicleFile | None = None
+    if tree is not None:
+        found = _transformer(source, pieces).transform(tree)
+        faults = sorted([*faults, *pieces.faults], key=lambda fault: fault.span.start)
+    if faults or found is None:
+        raise SpecificationErrors(f"{len(faults)} fault(s)", faults)
+    return found
+
+
+def _tree(
+    source: SourceText, outline: Outline
+) -> tuple[Tree[Token] | None, list[SpecificationError]]:
+    """Return the tree of what can be read, and the faults of the rest, at most so many."""
+    faults: list[SpecificationError] = []
+    text = source.text
+    while len(faults) < _MOST_FAULTS:
+        try:
+            return _grammar().parse(text), faults
+        except UnexpectedInput as error:
+            fault = _syntax_error(source, error)
+            accepted = _accepted(error)
+        faults.append(fault)
+        at = fault.span.start
+        parts = outline.faulty_parts(at, in_block="IF" in accepted, between=accepted >= _STARTS)
+        start, end = next((part for part in parts if text[slice(*part)].strip()), (0, 0))
+        if start == end or at >= len(text.rstrip()):
+            break
+        text = text[:start] + re.sub(r"\S", " ", text[start:end]) + text[end:]
+    return None, faults
 
 
 @cache
@@ -112,11 +160,16 @@ def _grammar() -> Lark:
 
 
 class _Pieces(Transformer[Token, Any]):
-    """The rules that are no class of their own: names, lists, numbers."""
+    """The rules that are no class of their own: names, lists, numbers, what is computed.
+
+    Attributes:
+        faults: Of numbers and intervals.
+    """
 
     def __init__(self, source: SourceText) -> None:
         super().__init__()
         self._source = source
+        self.faults: list[SpecificationError] = []
 
     def dotted_name(self, names: list[Token]) -> str:
         return ".".join(names)
@@ -128,7 +181,13 @@ class _Pieces(Transformer[Token, Any]):
     def parameters(self, items: list[Any]) -> tuple[Any, ...]:
         return tuple(item for item in items if item is not None)
 
-    memberships = arguments = statements = parameters
+    conditions = arguments = statements = constraints = bindings = terms = parameters
+
+    def instants(self, names: list[Token | None]) -> tuple[str, ...]:
+        return tuple(str(name) for name in names if name is not None)
+
+    def points(self, items: list[Any]) -> tuple[Any, ...]:
+        return tuple(item for item in items if item is not None)
 
     def count(self, tokens: list[Token]) -> int:
         return int(tokens[0])
@@ -142,13 +201,55 @@ class _Pieces(Transformer[Token, Any]):
         duration = self._duration(number)
         return Duration(-duration) if sign == "-" else duration
 
-    def offset(self, tokens: list[Token | None]) -> Duration:
-        return Duration(0) if tokens[-1] is None else self.signed(tokens)
+    def offset(self, tokens: list[Token]) -> Duration:
+        terms = [self.signed([*pair]) for pair in zip(tokens[::2], tokens[1::2], strict=True)]
+        total = Duration(sum(terms))
+        if len(terms) > 1 and abs(total) > _LONGEST:
+            self._complain("the sum of these lengths is longer than nine years", tokens[0])
+        return total
 
     def no_lower_limit(self, _sign: list[Token]) -> None:
         return None
 
     no_upper_limit = no_lower_limit
+
+    def interval_negated(self, items: list[Any]) -> Interval:
+        _sign, interval = items
+        return _negated(interval)
+
+    def interval_shifted(self, items: list[Any]) -> Interval:
+        interval, sign, number = items
+        shift = self.signed([sign, number])
+        return _sum(interval, Interval(interval.span, shift, shift))
+
+    def interval_sum(self, items: list[Any]) -> Interval:
+        left, sign, right = items
+        return _sum(left, _negated(right) if sign == "-" else right)
+
+    def interval_intersection(self, items: list[Any]) -> Interval:
+        left, right = items
+        found = _intersection(left, right)
+        if _is_empty(found):
+            self.faults.append(ChronicleSyntaxError("these intervals share nothing", left.span))
+        return found
+
+    def interval_union(self, items: list[Any]) -> Interval:
+        left, right = items
+        shared = _intersection(left, right)
+        if _is_empty(shared, by=MILLISECOND):
+            message = "these intervals leave a gap and have no interval as their union"
+            self.faults.append(ChronicleSyntaxError(message, left.span))
+        lowers, uppers = (left.lower, right.lower), (left.upper, right.upper)
+        lower = None if None in lowers else min(lowers)
+        return Interval(left.span, lower, None if None in uppers else max(uppers))
+
+    @v_args(meta=True)
+    def non_membership(self, meta: Meta, items: list[Any]) -> syntax.Negation:
+        span = Span(self._source, meta.start_pos, meta.end_pos)
+        return syntax.Negation(span, syntax.Membership(span, *items))
+
+    def _complain(self, message: str, token: Token) -> None:
+        self.faults.append(ChronicleSyntaxError(message, _span_of_token(self._source, token)))
 
     def _duration(self, token: Token) -> Duration:
         try:
@@ -156,16 +257,40 @@ class _Pieces(Transformer[Token, Any]):
         except ValueError:
             duration = None
         if duration is None or duration % MILLISECOND:
-            message = f"'{token}' is finer than a millisecond, the instant of chronicles"
-            raise ChronicleSyntaxError(message, _span_of_token(self._source, token))
+            self._complain(
+                f"'{token}' is finer than a millisecond, the instant of chronicles", token
+            )
+            return MILLISECOND
         if duration > _LONGEST:
-            message = f"'{token}' is longer than nine years"
-            raise ChronicleSyntaxError(message, _span_of_token(self._source, token))
+            self._complain(f"'{token}' is longer than nine years", token)
         return duration
 
 
-def _transformer(source: SourceText) -> Transformer[Token, Any]:
-    pieces = _Pieces(source)
+def _negated(interval: Interval) -> Interval:
+    lower = None if interval.upper is None else Duration(-interval.upper)
+    upper = None if interval.lower is None else Duration(-interval.lower)
+    return Interval(interval.span, lower, upper)
+
+
+def _sum(left: Interval, right: Interval) -> Interval:
+    def plus(one: Duration | None, other: Duration | None) -> Duration | None:
+        return None if one is None or other is None else Duration(one + other)
+
+    return Interval(left.span, plus(left.lower, right.lower), plus(left.upper, right.upper))
+
+
+def _intersection(left: Interval, right: Interval) -> Interval:
+    lowers = [limit for limit in (left.lower, right.lower) if limit is not None]
+    uppers = [limit for limit in (left.upper, right.upper) if limit is not None]
+    return Interval(left.span, max(lowers, default=None), min(uppers, default=None))
+
+
+def _is_empty(interval: Interval, by: int = 0) -> bool:
+    lower, upper = interval.lower, interval.upper
+    return lower is not None and upper is not None and lower > upper + by
+
+
+def _transformer(source: SourceText, pieces: _Pieces) -> Transformer[Token, Any]:
     transformer: Transformer[Token, Any] = create_transformer(
         syntax, pieces, decorator_factory=lambda **_: v_args(wrapper=_spanned(source))
     )
@@ -204,11 +329,73 @@ def _values(children: Sequence[Any]) -> Sequence[Any]:
     return (tuple(child for child in children if child is not None),)
 
 
+def _event_at(children: Sequence[Any]) -> Sequence[Any]:
+    """Turn the moment of an event into its instant and how much later than that it is."""
+    event_type, moment = children
+    if isinstance(moment, Displaced):
+        displacement = moment.interval
+    else:
+        displacement = Interval(moment.span, moment.offset, moment.offset)
+    at_once = displacement.lower == displacement.upper == 0
+    return event_type, moment.name, None if at_once else displacement
+
+
+def _displaced(children: Sequence[Any]) -> Sequence[Any]:
+    name, sign, interval = children
+    return str(name), _negated(interval) if sign == "-" else interval
+
+
+def _length(children: Sequence[Any]) -> Sequence[Any]:
+    first, rest = children
+    return (first + rest,)
+
+
+def _chronicle(children: Sequence[Any]) -> Sequence[Any]:
+    name, parameters, instants, statements = children
+    return str(name), parameters, statements, instants
+
+
+def _named_constraint(children: Sequence[Any]) -> Sequence[Any]:
+    name, *rest = children
+    has_terms = bool(rest) and isinstance(rest[0], tuple)
+    if has_terms:
+        return str(name), rest[0], rest[1]
+    return str(name), (), _values(rest)[0]
+
+
+def _variable_declaration(children: Sequence[Any]) -> Sequence[Any]:
+    variables = tuple(c for c in children if isinstance(c, syntax.Variable | syntax.Star))
+    return variables, next((c for c in children if c is not None and c not in variables), None)
+
+
+def _conditional(children: Sequence[Any]) -> Sequence[Any]:
+    condition, consequence, *alternative = children
+    return condition, consequence, alternative[0] if alternative else None
+
+
+def _instant_binding(children: Sequence[Any]) -> Sequence[Any]:
+    *label, instant = children
+    return str(label[0]) if label and label[0] else None, instant
+
+
+def _names(children: Sequence[Any]) -> Sequence[Any]:
+    return (tuple(map(str, children)),)
+
+
 _ARRANGEMENTS: dict[str, Callable[[Sequence[Any]], Sequence[Any]]] = {
     "chronicle_file": _values,
     "interval": _interval,
     "comparison": _comparison,
     "value_set": _values,
+    "event_at": _event_at,
+    "displaced": _displaced,
+    "length": _length,
+    "chronicle": _chronicle,
+    "named_constraint": _named_constraint,
+    "variable_declaration": _variable_declaration,
+    "instant_declaration": _names,
+    "conditional": _conditional,
+    "instant_binding": _instant_binding,
 }
 
 
@@ -224,19 +411,24 @@ def _syntax_error(source: SourceText, error: UnexpectedInput) -> ChronicleSyntax
     if isinstance(error, UnexpectedCharacters):
         assert error.pos_in_stream is not None
         span = _word_at(source, error.pos_in_stream)
-        accepted: Collection[str] | None = error.allowed
     else:
         token = error.token  # type: ignore[attr-defined]  # UnexpectedToken or UnexpectedEOF
         at_end = Span(source, len(source.text.rstrip()), len(source.text.rstrip()))
         is_end = isinstance(error, UnexpectedEOF) or token.type == "$END"
         span = at_end if is_end else _span_of_token(source, token)
-        accepted = getattr(error, "accepts", None) or getattr(error, "expected", None)
-    expected = _alternatives(accepted or ())
+    expected = _alternatives(_accepted(error))
     found = source.text[span.start : span.end]
     message = f"expected {_listed(expected)}, found {_described(found)}"
     nearest = nearest_name(found, (word.strip("'") for word in expected))
     hint = f"; did you mean '{nearest}'?" if nearest and nearest != found else ""
     return ChronicleSyntaxError(message + hint, span)
+
+
+def _accepted(error: UnexpectedInput) -> frozenset[str]:
+    """Return the terminals that could have come instead."""
+    if isinstance(error, UnexpectedCharacters):
+        return frozenset(error.allowed or ())
+    return frozenset(getattr(error, "accepts", None) or getattr(error, "expected", None) or ())
 
 
 def _word_at(source: SourceText, start: int) -> Span:
@@ -260,6 +452,10 @@ def _alternatives(terminals: Collection[str]) -> list[str]:
     if rest >= _ANY_VALUE:
         rest -= _ANY_VALUE
         words.add("a value")
+    if "NAME" in rest:
+        rest -= {"START", "END"}
+    if "ORDER" in rest:
+        rest -= {"EQUAL"}
     words |= {_EXPECTED.get(name) or f"'{pattern_by_name.get(name, name)}'" for name in rest}
     return sorted(words)
 

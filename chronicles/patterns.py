@@ -5,18 +5,33 @@ event is one call of a function made for that event type.
 """
 
 from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from itertools import product
 from operator import itemgetter
 
 from chronicles.events import Event
-from chronicles.syntax import EventType, Parameter, Value, Variable
+from chronicles.syntax import EventType, Parameter, Star, Value, Variable
 
-__all__ = ["Pattern", "Values", "key_of", "pattern_from_event_type", "projection"]
+__all__ = ["Filter", "Pattern", "Values", "key_of", "pattern_from_event_type", "projection"]
 
 Values = tuple[str, ...]
 """The values of some variables, in an order that is known from elsewhere."""
 
 
 _Row = tuple[str | None, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Filter:
+    """A condition on the star variables of an event type.
+
+    Attributes:
+        names: The variables that it looks at.
+        allows: Whether it allows their values, in that order.
+    """
+
+    names: tuple[str, ...]
+    allows: Callable[[Sequence[str | None]], bool]
 
 
 class Pattern:
@@ -45,11 +60,12 @@ class Pattern:
         self.variables = variables
         self.match = match
         self.to_value = change.after.text if change and isinstance(change.after, Value) else None
-        self.loose = any(not isinstance(p, Variable | Value) for p in parameters)
+        is_exact = all(isinstance(p, Variable | Value) for p in parameters)
+        self.loose = change is None or not is_exact
 
 
-def pattern_from_event_type(event_type: EventType) -> Pattern:
-    """Return the pattern of *event_type*."""
+def pattern_from_event_type(event_type: EventType, filters: Sequence[Filter] = ()) -> Pattern:
+    """Return the pattern of *event_type*, for events that also pass *filters*."""
     names = [p.name for p in _parameters(event_type) if isinstance(p, Variable)]
     variables = tuple(dict.fromkeys(names))
     n_arguments = len(event_type.arguments)
@@ -62,6 +78,8 @@ def pattern_from_event_type(event_type: EventType) -> Pattern:
         match = _message_match(n_arguments)
     else:
         match = _change_match(n_arguments, event_type.change.before, event_type.change.after)
+    if filters:
+        match = _filtered(match, event_type, filters)
     return Pattern(event_type, variables, match)
 
 
@@ -103,8 +121,6 @@ def _message_match(n_arguments: int) -> Callable[[Event], Values | None]:
     """Match a message all of whose arguments are different variables."""
 
     def match(event: Event) -> Values | None:
-        if event.to_value is not None or event.from_value is not None:
-            return None
         return event.arguments if len(event.arguments) == n_arguments else None
 
     return match
@@ -153,7 +169,9 @@ def _general_match(
 
     def match(event: Event) -> Values | None:
         before, after = event.from_value, event.to_value
-        if len(event.arguments) != n_arguments or is_message != (before is None and after is None):
+        if len(event.arguments) != n_arguments:
+            return None
+        if before is None and after is None and not is_message:
             return None
         row = (*event.arguments, before, after)
         if not (unconditional or fits(row)):
@@ -162,3 +180,23 @@ def _general_match(
         return None if None in values else values  # type: ignore[return-value]  # just checked
 
     return match
+
+
+def _filtered(
+    match: Callable[[Event], Values | None], event_type: EventType, filters: Sequence[Filter]
+) -> Callable[[Event], Values | None]:
+    """Match what *match* does if it passes *filters*, whichever place a star stands at."""
+    names = [p.name if isinstance(p, Variable | Star) else "" for p in _parameters(event_type)]
+    tests: list[tuple[Callable[[_Row], _Row], Callable[[Sequence[str | None]], bool]]] = []
+    for each in filters:
+        places = [[i for i, name in enumerate(names) if name == wanted] for wanted in each.names]
+        tests.extend((_picker(chosen), each.allows) for chosen in product(*places))
+
+    def matches(event: Event) -> Values | None:
+        values = match(event)
+        if values is None:
+            return None
+        row = (*event.arguments, event.from_value, event.to_value)
+        return values if all(allows(pick(row)) for pick, allows in tests) else None
+
+    return matches

@@ -4,8 +4,9 @@ Comments and the layout of the original are not part of the tree. Equal trees pr
 """
 
 import re
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from functools import singledispatch
+from itertools import pairwise
 
 from chronicles.parser import RESERVED_WORDS
 from chronicles.syntax import (
@@ -15,16 +16,34 @@ from chronicles.syntax import (
     Chronicle,
     ChronicleFile,
     Comparison,
+    Condition,
+    Conditional,
+    Conjunction,
+    ConstraintDeclaration,
     Difference,
+    Disjunction,
+    Displaced,
+    Domain,
+    DomainComplement,
     DomainDeclaration,
+    DomainDifference,
+    DomainIntersection,
     DomainReference,
+    DomainUnion,
+    Equivalence,
     EventAt,
     EventType,
+    Implication,
+    Inclusion,
     Instant,
+    InstantBinding,
+    InstantDeclaration,
     Interval,
     Length,
     Membership,
     MessageDeclaration,
+    NamedConstraint,
+    Negation,
     NoEvent,
     Occurs,
     Relation,
@@ -34,6 +53,7 @@ from chronicles.syntax import (
     Value,
     ValueSet,
     Variable,
+    VariableDeclaration,
     Within,
 )
 from dyknow.time import text_from_duration
@@ -91,6 +111,14 @@ def _(node: Difference) -> str:
 
 
 @text_of.register
+def _(node: Displaced) -> str:
+    lower = node.interval.lower
+    if lower is not None and lower == node.interval.upper:
+        return f"{node.name}{_offset(lower)}"
+    return f"{node.name} + {text_of(node.interval)}"
+
+
+@text_of.register
 def _(node: Length) -> str:
     return text_from_duration(node.duration)
 
@@ -126,18 +154,76 @@ def _(node: DomainReference) -> str:
 
 
 @text_of.register
+def _(node: DomainUnion) -> str:
+    return f"{_operand_domain(node.left)} | {_operand_domain(node.right)}"
+
+
+@text_of.register
+def _(node: DomainIntersection) -> str:
+    return f"{_operand_domain(node.left)} & {_operand_domain(node.right)}"
+
+
+@text_of.register
+def _(node: DomainDifference) -> str:
+    return f"{_operand_domain(node.left)} \\ {_operand_domain(node.right)}"
+
+
+@text_of.register
+def _(node: DomainComplement) -> str:
+    return f"~{_operand_domain(node.body)}"
+
+
+@text_of.register
 def _(node: Membership) -> str:
-    return f"{node.variable.name} in {text_of(node.domain)}"
+    return f"{text_of(node.variable)} in {text_of(node.domain)}"
 
 
 @text_of.register
 def _(node: Relation) -> str:
-    return f"{node.variable.name} {node.sign} {text_of(node.other)}"
+    return f"{text_of(node.variable)} {node.sign} {text_of(node.other)}"
+
+
+@text_of.register
+def _(node: Negation) -> str:
+    if isinstance(node.body, Membership):
+        return f"{text_of(node.body.variable)} not in {text_of(node.body.domain)}"
+    return f"not {_operand_condition(node.body)}"
+
+
+@text_of.register
+def _(node: Conjunction) -> str:
+    return f"{_operand_condition(node.left)} and {_operand_condition(node.right)}"
+
+
+@text_of.register
+def _(node: Disjunction) -> str:
+    return f"{_operand_condition(node.left)} or {_operand_condition(node.right)}"
+
+
+@text_of.register
+def _(node: Implication) -> str:
+    return f"{_operand_condition(node.left)} => {_operand_condition(node.right)}"
+
+
+@text_of.register
+def _(node: Equivalence) -> str:
+    return f"{_operand_condition(node.left)} <=> {_operand_condition(node.right)}"
+
+
+@text_of.register
+def _(node: Conditional) -> str:
+    then = f"if {_operand_condition(node.condition)} then {_operand_condition(node.consequence)}"
+    if node.alternative is None:
+        return then
+    return f"{then} else {_operand_condition(node.alternative)}"
 
 
 @text_of.register
 def _(node: EventAt) -> str:
-    return f"event({text_of(node.event_type)}, {node.instant})"
+    moment = node.instant
+    if node.displacement is not None:
+        moment = text_of(Displaced(node.span, node.instant, node.displacement))
+    return f"event({text_of(node.event_type)}, {moment})"
 
 
 @text_of.register
@@ -163,9 +249,44 @@ def _(node: ReportNonOverlapping) -> str:
 
 
 @text_of.register
+def _(node: VariableDeclaration) -> str:
+    domain = f" in {text_of(node.domain)}" if node.domain is not None else ""
+    return f"variable {', '.join(map(text_of, node.variables))}{domain}"
+
+
+@text_of.register
+def _(node: InstantDeclaration) -> str:
+    return f"instant {', '.join(node.names)}"
+
+
+@text_of.register
+def _(node: NamedConstraint) -> str:
+    instants = f"({', '.join(map(text_of, node.instants))})"
+    if not node.parameters:
+        return f"{node.name}{instants}"
+    return f"{node.name}{_bracketed(node.parameters)}{instants if node.instants else ''}"
+
+
+@text_of.register
+def _(node: InstantBinding) -> str:
+    label = f"{node.label} = " if node.label else ""
+    return f"{label}{text_of(node.instant)}"
+
+
+@text_of.register
+def _(node: Inclusion) -> str:
+    bindings = f" ({', '.join(map(text_of, node.bindings))})" if node.bindings else ""
+    return f"chronicle {node.name}{_bracketed(node.parameters)}{bindings}"
+
+
+@text_of.register
 def _(node: Chronicle) -> str:
-    head = f"chronicle {node.name}{_bracketed(node.parameters)}"
-    return f"{head} {_block(node.statements)}"
+    return f"chronicle {_head(node)} {_block(node.statements)}"
+
+
+@text_of.register
+def _(node: ConstraintDeclaration) -> str:
+    return f"constraint {_head(node)} {_block(node.statements)}"
 
 
 @text_of.register
@@ -184,13 +305,34 @@ def _(node: MessageDeclaration) -> str:
 
 
 def _signal(node: AttributeDeclaration | MessageDeclaration) -> str:
-    block = f" {_block(node.memberships)}" if node.memberships else ""
+    block = f" {_block(node.conditions)}" if node.conditions else ""
     return f"{node.name}{_bracketed(node.parameters)}{block}"
 
 
+def _head(node: Chronicle | ConstraintDeclaration) -> str:
+    instants = f"({', '.join(node.instants)})" if node.instants else ""
+    return f"{node.name}{_bracketed(node.parameters)}{instants}"
+
+
+def _operand_domain(domain: Domain) -> str:
+    is_simple = isinstance(domain, ValueSet | DomainReference | DomainComplement)
+    return text_of(domain) if is_simple else f"({text_of(domain)})"
+
+
+def _operand_condition(condition: Condition) -> str:
+    is_simple = isinstance(condition, Membership | Relation)
+    return text_of(condition) if is_simple else f"({text_of(condition)})"
+
+
 def _block(statements: Iterable[object]) -> str:
-    lines = "".join(f"    {text_of(statement)}\n" for statement in statements)
+    lines = "".join(f"    {text}\n" for text in _parted(map(text_of, statements)))
     return f"{{\n{lines}}}"
+
+
+def _parted(texts: Iterable[str]) -> Iterator[str]:
+    """Yield statements, parted by `;` where the next begins with a sign or a bracket."""
+    for text, following in pairwise([*texts, ""]):
+        yield f"{text};" if following.startswith(("-", "(")) else text
 
 
 def _bracketed(parameters: Iterable[object]) -> str:

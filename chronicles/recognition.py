@@ -192,7 +192,10 @@ def _recognition(model: Model, instance: Instance, recognised_at: int) -> Recogn
     return Recognition(
         chronicle=model.name,
         arguments=_arguments(model, instance),
-        instants={slot.instant: TimePoint(times[slot.index]) for slot in model.slots},
+        instants={
+            **{slot.instant: TimePoint(times[slot.index]) for slot in model.slots},
+            **{name: TimePoint(times[at] + by) for name, (at, by) in model.derived.items()},
+        },
         events=tuple(event for event in instance.events if event is not None),
         begin=TimePoint(first),
         end=TimePoint(last),

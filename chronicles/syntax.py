@@ -22,17 +22,34 @@ __all__ = [
     "Chronicle",
     "ChronicleFile",
     "Comparison",
+    "Condition",
+    "Conditional",
+    "Conjunction",
+    "ConstraintDeclaration",
     "Difference",
+    "Disjunction",
+    "Displaced",
     "Domain",
+    "DomainComplement",
     "DomainDeclaration",
+    "DomainDifference",
+    "DomainIntersection",
     "DomainReference",
+    "DomainUnion",
+    "Equivalence",
     "EventAt",
     "EventType",
+    "Implication",
+    "Inclusion",
     "Instant",
+    "InstantBinding",
+    "InstantDeclaration",
     "Interval",
     "Length",
     "Membership",
     "MessageDeclaration",
+    "NamedConstraint",
+    "Negation",
     "NoEvent",
     "Occurs",
     "Operand",
@@ -46,7 +63,9 @@ __all__ = [
     "Value",
     "ValueSet",
     "Variable",
+    "VariableDeclaration",
     "Within",
+    "stars_of",
     "variables_of",
 ]
 
@@ -131,15 +150,26 @@ class Length(_Node):
     duration: Duration
 
 
-Operand = Instant | Difference | Length
-
-
 @dataclass(frozen=True)
 class Interval(_Node):
-    """A closed interval of lengths; None is without limit. `]0, 5]` is read as `[1, 5]`."""
+    """A closed interval of lengths; None is without limit.
+
+    `]0, 5]` is read as `[1, 5]`, and a sum, an intersection or a union as what it amounts to.
+    """
 
     lower: Duration | None
     upper: Duration | None
+
+
+@dataclass(frozen=True)
+class Displaced(_Node):
+    """`t3 + [0, 5]`: some time that is as much later than an instant as an interval allows."""
+
+    name: str
+    interval: Interval
+
+
+Operand = Instant | Displaced | Difference | Length
 
 
 @dataclass(frozen=True)
@@ -152,9 +182,9 @@ class Comparison(_Node):
 
 @dataclass(frozen=True)
 class Within(_Node):
-    """`t3 - t2 in [a, b]`."""
+    """`t3 - t2 in [a, b]`, or `t3 in [a, b]`, which speaks of the time since time zero."""
 
-    difference: Difference
+    difference: Difference | Instant
     interval: Interval
 
 
@@ -175,32 +205,130 @@ class DomainReference(_Node):
     name: str
 
 
-Domain = ValueSet | DomainReference
+@dataclass(frozen=True)
+class DomainUnion(_Node):
+    """`A | B`, also `A + B`."""
+
+    left: "Domain"
+    right: "Domain"
+
+
+@dataclass(frozen=True)
+class DomainIntersection(_Node):
+    """`A & B`."""
+
+    left: "Domain"
+    right: "Domain"
+
+
+@dataclass(frozen=True)
+class DomainDifference(_Node):
+    r"""`A \ B`, also `A - B`."""
+
+    left: "Domain"
+    right: "Domain"
+
+
+@dataclass(frozen=True)
+class DomainComplement(_Node):
+    """`~A`: every value that is not in A."""
+
+    body: "Domain"
+
+
+Domain = (
+    ValueSet
+    | DomainReference
+    | DomainUnion
+    | DomainIntersection
+    | DomainDifference
+    | DomainComplement
+)
 
 
 @dataclass(frozen=True)
 class Membership(_Node):
-    """`?x in Car`."""
+    """`?x in Car`; an inclusion may put a value in the place of the variable."""
 
-    variable: Variable
+    variable: Variable | Star | Value
     domain: Domain
 
 
 @dataclass(frozen=True)
 class Relation(_Node):
-    """`?a != ?b` or `?a == b`."""
+    """`?a != ?b` or `?a == b`; an inclusion may put a value in the place of the variable."""
 
-    variable: Variable
+    variable: Variable | Star | Value
     sign: str
-    other: Variable | Value
+    other: Variable | Star | Value
+
+
+@dataclass(frozen=True)
+class Negation(_Node):
+    """`not C`; `?x not in D` is read as `not ?x in D`."""
+
+    body: "Condition"
+
+
+@dataclass(frozen=True)
+class Conjunction(_Node):
+    """`C and D`."""
+
+    left: "Condition"
+    right: "Condition"
+
+
+@dataclass(frozen=True)
+class Disjunction(_Node):
+    """`C or D`."""
+
+    left: "Condition"
+    right: "Condition"
+
+
+@dataclass(frozen=True)
+class Implication(_Node):
+    """`C => D`."""
+
+    left: "Condition"
+    right: "Condition"
+
+
+@dataclass(frozen=True)
+class Equivalence(_Node):
+    """`C <=> D`."""
+
+    left: "Condition"
+    right: "Condition"
+
+
+@dataclass(frozen=True)
+class Conditional(_Node):
+    """`if C then D else E`; without `else` it is the implication."""
+
+    condition: "Condition"
+    consequence: "Condition"
+    alternative: "Condition | None"
+
+
+Condition = (
+    Membership | Relation | Negation | Conjunction | Disjunction | Implication | Equivalence
+) | Conditional
 
 
 @dataclass(frozen=True)
 class EventAt(_Node):
-    """`event(E, t)`: an event of this type at the instant t."""
+    """`event(E, t)`: an event of this type at the instant t.
+
+    Attributes:
+        event_type: Which event.
+        instant: The instant t.
+        displacement: In `event(E, t + 5)` and `event(E, t + [0, 5])` how much later than t.
+    """
 
     event_type: EventType
     instant: str
+    displacement: Interval | None = None
 
 
 @dataclass(frozen=True)
@@ -248,14 +376,58 @@ class ReportNonOverlapping(_Node):
     end: str
 
 
+@dataclass(frozen=True)
+class VariableDeclaration(_Node):
+    """`variable ?x, *y in Car`: variables of the chronicle, and what they may be."""
+
+    variables: tuple[Variable | Star, ...]
+    domain: Domain | None
+
+
+@dataclass(frozen=True)
+class InstantDeclaration(_Node):
+    """`instant t1, t2`: instants of the chronicle, which need no declaration."""
+
+    names: tuple[str, ...]
+
+
+@dataclass(frozen=True)
+class NamedConstraint(_Node):
+    """`sequence(t1, t2 + 5)` or `rivals[?a, ?b]`: what a declared constraint says of these."""
+
+    name: str
+    parameters: tuple[Variable | Star | Value, ...]
+    instants: tuple[Instant, ...]
+
+
+@dataclass(frozen=True)
+class InstantBinding(_Node):
+    """`t1 = begin`: an instant of an included chronicle, by name or by place, is one of ours."""
+
+    label: str | None
+    instant: Instant
+
+
+@dataclass(frozen=True)
+class Inclusion(_Node):
+    """`chronicle overtake[?a, ?b] (t1 = begin)`: everything that another chronicle says."""
+
+    name: str
+    parameters: tuple[Parameter, ...]
+    bindings: tuple[InstantBinding, ...]
+
+
 Statement = (
     EventAt
     | NoEvent
     | Occurs
     | Comparison
     | Within
-    | Membership
-    | Relation
+    | Condition
+    | VariableDeclaration
+    | InstantDeclaration
+    | NamedConstraint
+    | Inclusion
     | ReportAll
     | ReportNonOverlapping
 )
@@ -269,10 +441,29 @@ class Chronicle(_Node):
         name: What its recognitions are called.
         parameters: The variables that a recognition tells.
         statements: Predicates and constraints, all of which must hold.
+        instants: The instants that an inclusion can bind by their place.
     """
 
     name: str
     parameters: tuple[Variable, ...]
+    statements: tuple[Statement, ...]
+    instants: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True)
+class ConstraintDeclaration(_Node):
+    """`constraint sequence(t1, t2) { t1 <= t2 <= t1 + 5 }`: a name for some constraints.
+
+    Attributes:
+        name: Its name.
+        parameters: The variables that it speaks of.
+        instants: The instants that it speaks of.
+        statements: What it says of them.
+    """
+
+    name: str
+    parameters: tuple[Variable, ...]
+    instants: tuple[str, ...]
     statements: tuple[Statement, ...]
 
 
@@ -281,7 +472,7 @@ class DomainDeclaration(_Node):
     """`domain Color = {red, blue}`."""
 
     name: str
-    domain: ValueSet
+    domain: Domain
 
 
 @dataclass(frozen=True)
@@ -290,7 +481,7 @@ class AttributeDeclaration(_Node):
 
     name: str
     parameters: tuple[Variable, ...]
-    memberships: tuple[Membership, ...]
+    conditions: tuple[Condition, ...]
 
 
 @dataclass(frozen=True)
@@ -299,7 +490,7 @@ class MessageDeclaration(_Node):
 
     name: str
     parameters: tuple[Variable, ...]
-    memberships: tuple[Membership, ...]
+    conditions: tuple[Condition, ...]
 
 
 @dataclass(frozen=True)
@@ -307,13 +498,23 @@ class ChronicleFile(_Node):
     """Everything that one file declares, in the order of the text."""
 
     declarations: tuple[
-        DomainDeclaration | AttributeDeclaration | MessageDeclaration | Chronicle, ...
+        DomainDeclaration
+        | ConstraintDeclaration
+        | AttributeDeclaration
+        | MessageDeclaration
+        | Chronicle,
+        ...,
     ]
 
     @property
     def domains(self) -> tuple[DomainDeclaration, ...]:
         """The declared domains."""
         return tuple(d for d in self.declarations if isinstance(d, DomainDeclaration))
+
+    @property
+    def constraints(self) -> tuple[ConstraintDeclaration, ...]:
+        """The declared constraints."""
+        return tuple(d for d in self.declarations if isinstance(d, ConstraintDeclaration))
 
     @property
     def signals(self) -> tuple[AttributeDeclaration | MessageDeclaration, ...]:
@@ -333,4 +534,13 @@ def variables_of(event_type: EventType) -> Iterator[Variable]:
     values = (change.before, change.after) if change else ()
     for parameter in (*event_type.arguments, *values):
         if isinstance(parameter, Variable):
+            yield parameter
+
+
+def stars_of(event_type: EventType) -> Iterator[Star]:
+    """Yield the `*` variables of *event_type* from left to right."""
+    change = event_type.change
+    values = (change.before, change.after) if change else ()
+    for parameter in (*event_type.arguments, *values):
+        if isinstance(parameter, Star):
             yield parameter

@@ -5,12 +5,12 @@ from pathlib import Path
 
 from chronicles import check as chronicle_check
 from chronicles.parser import parse_chronicles
-from dyknow.errors import SpecificationError
+from dyknow.errors import SpecificationError, SpecificationErrors
 from dyknow.kpl.check import faults_of_text
 from dyknow.kpl.parser import read_specification
 from dyknow.kpl.unused import warnings
-from dyknow.mtl import check as formula_check
-from dyknow.mtl.parser import parse_formula
+from dyknow.mtl.declarations import document_faults
+from dyknow.mtl.parser import parse_document
 from traffic.errors import RequestError, ScenarioError
 from traffic.scenarios import read_scenario
 
@@ -65,13 +65,13 @@ def _faults_of_scenario(path: Path) -> list[str]:
 def _faults_of_chronicles(text: str, name: str) -> Faults:
     try:
         return chronicle_check.faults(parse_chronicles(text, name))
-    except SpecificationError as error:
-        return [error]
+    except SpecificationErrors as errors:
+        return [fault for fault in errors.exceptions if isinstance(fault, SpecificationError)]
 
 
 def _faults_of_formula(text: str, name: str) -> Faults:
     try:
-        return formula_check.faults(parse_formula(text, name))
+        return document_faults(parse_document(text, name))
     except SpecificationError as error:
         return [error]
 

@@ -5,7 +5,6 @@ from pathlib import Path
 import pytest
 
 from chronicles.check import check
-from chronicles.errors import ChronicleSyntaxError
 from chronicles.parser import parse_chronicles
 from chronicles.printer import print_chronicles
 from dyknow.errors import SpecificationErrors
@@ -18,8 +17,6 @@ def messages(path: Path) -> str:
     """Return what a person is told about a file."""
     try:
         check(parse_chronicles(path.read_text(encoding="utf-8"), path.name))
-    except ChronicleSyntaxError as error:
-        return f"{error.report()}\n"
     except SpecificationErrors as errors:
         return "".join(f"{error.report()}\n" for error in errors.exceptions)
     return ""

@@ -8,6 +8,7 @@ from chronicles import syntax
 from chronicles.errors import ChronicleSyntaxError
 from chronicles.parser import RESERVED_WORDS, parse_chronicles, read_chronicles
 from chronicles.printer import print_chronicles
+from dyknow.errors import SpecificationErrors
 from dyknow.source_text import MADE_IN_PYTHON
 from dyknow.time import MILLISECOND
 
@@ -35,13 +36,52 @@ event_types = st.builds(
     st.lists(parameters, max_size=3).map(tuple),
     st.one_of(st.none(), changes),
 )
-instants = st.builds(syntax.Instant, st.just(AT), names, durations)
-differences = st.builds(syntax.Difference, st.just(AT), names, names, durations)
-operands = st.one_of(instants, differences, st.builds(syntax.Length, st.just(AT), durations))
+moments = st.one_of(names, st.sampled_from(["start", "end"]))
+instants = st.builds(syntax.Instant, st.just(AT), moments, durations)
+differences = st.builds(syntax.Difference, st.just(AT), moments, moments, durations)
 limits = st.one_of(st.none(), durations)
+intervals = st.builds(syntax.Interval, st.just(AT), limits, limits)
+displaced = st.builds(
+    syntax.Displaced,
+    st.just(AT),
+    moments,
+    intervals.filter(lambda i: i.lower != i.upper or i.lower is None),
+)
+lengths = st.builds(syntax.Length, st.just(AT), durations)
+operands = st.one_of(instants, displaced, differences, lengths)
 value_sets = st.builds(syntax.ValueSet, st.just(AT), st.lists(texts, max_size=3).map(tuple))
-domains = st.one_of(value_sets, st.builds(syntax.DomainReference, st.just(AT), names))
-memberships = st.builds(syntax.Membership, st.just(AT), variables, domains)
+domains = st.recursive(
+    st.one_of(value_sets, st.builds(syntax.DomainReference, st.just(AT), names)),
+    lambda inner: st.one_of(
+        st.builds(syntax.DomainUnion, st.just(AT), inner, inner),
+        st.builds(syntax.DomainIntersection, st.just(AT), inner, inner),
+        st.builds(syntax.DomainDifference, st.just(AT), inner, inner),
+        st.builds(syntax.DomainComplement, st.just(AT), inner),
+    ),
+    max_leaves=4,
+)
+stars = st.builds(syntax.Star, st.just(AT), words.map("*{}".format))
+terms = st.one_of(variables, stars, values)
+memberships = st.builds(syntax.Membership, st.just(AT), st.one_of(variables, stars), domains)
+relations = st.builds(
+    syntax.Relation,
+    st.just(AT),
+    st.one_of(variables, stars),
+    st.sampled_from(["==", "!="]),
+    terms,
+)
+conditions = st.recursive(
+    st.one_of(memberships, relations),
+    lambda inner: st.one_of(
+        st.builds(syntax.Negation, st.just(AT), inner),
+        st.builds(syntax.Conjunction, st.just(AT), inner, inner),
+        st.builds(syntax.Disjunction, st.just(AT), inner, inner),
+        st.builds(syntax.Implication, st.just(AT), inner, inner),
+        st.builds(syntax.Equivalence, st.just(AT), inner, inner),
+        st.builds(syntax.Conditional, st.just(AT), inner, inner, st.one_of(st.none(), inner)),
+    ),
+    max_leaves=4,
+)
 
 
 @st.composite
@@ -53,8 +93,28 @@ def comparisons(draw: st.DrawFn) -> syntax.Comparison:
     return syntax.Comparison(AT, tuple(chain), tuple(signs))
 
 
+displacements = intervals.filter(lambda i: not i.lower == i.upper == 0)
+constraints = st.one_of(
+    comparisons(),
+    st.builds(syntax.Within, st.just(AT), st.one_of(differences, instants), intervals),
+    conditions,
+    st.builds(
+        syntax.NamedConstraint,
+        st.just(AT),
+        names,
+        st.lists(terms, max_size=2).map(tuple),
+        st.lists(instants, max_size=2).map(tuple),
+    ),
+)
+bindings = st.builds(syntax.InstantBinding, st.just(AT), st.one_of(st.none(), moments), instants)
 statements = st.one_of(
-    st.builds(syntax.EventAt, st.just(AT), event_types, names),
+    st.builds(
+        syntax.EventAt,
+        st.just(AT),
+        event_types,
+        moments,
+        st.one_of(st.none(), displacements),
+    ),
     st.builds(syntax.NoEvent, st.just(AT), event_types, instants, instants),
     st.builds(
         syntax.Occurs,
@@ -65,27 +125,38 @@ statements = st.one_of(
         instants,
         instants,
     ),
-    comparisons(),
+    constraints,
     st.builds(
-        syntax.Within,
+        syntax.VariableDeclaration,
         st.just(AT),
-        differences,
-        st.builds(syntax.Interval, st.just(AT), limits, limits),
+        st.lists(st.one_of(variables, stars), min_size=1, max_size=2).map(tuple),
+        st.one_of(st.none(), domains),
     ),
-    memberships,
     st.builds(
-        syntax.Relation,
+        syntax.InstantDeclaration, st.just(AT), st.lists(names, min_size=1, max_size=2).map(tuple)
+    ),
+    st.builds(
+        syntax.Inclusion,
         st.just(AT),
-        variables,
-        st.sampled_from(["==", "!="]),
-        st.one_of(variables, values),
+        names,
+        st.lists(parameters, max_size=2).map(tuple),
+        st.lists(bindings, max_size=2).map(tuple),
     ),
     st.builds(syntax.ReportAll, st.just(AT)),
-    st.builds(syntax.ReportNonOverlapping, st.just(AT), names, names),
+    st.builds(syntax.ReportNonOverlapping, st.just(AT), moments, moments),
 )
-blocks = st.lists(memberships, max_size=2).map(tuple)
+blocks = st.lists(conditions, max_size=2).map(tuple)
+some_instants = st.lists(names, max_size=2).map(tuple)
 declarations = st.one_of(
-    st.builds(syntax.DomainDeclaration, st.just(AT), names, value_sets),
+    st.builds(syntax.DomainDeclaration, st.just(AT), names, domains),
+    st.builds(
+        syntax.ConstraintDeclaration,
+        st.just(AT),
+        names,
+        signatures,
+        some_instants,
+        st.lists(constraints, max_size=3).map(tuple),
+    ),
     st.builds(syntax.AttributeDeclaration, st.just(AT), dotted_names, signatures, blocks),
     st.builds(syntax.MessageDeclaration, st.just(AT), dotted_names, signatures, blocks),
     st.builds(
@@ -94,6 +165,7 @@ declarations = st.one_of(
         names,
         signatures,
         st.lists(statements, max_size=5).map(tuple),
+        some_instants,
     ),
 )
 files = st.builds(syntax.ChronicleFile, st.just(AT), st.lists(declarations, max_size=4).map(tuple))
@@ -124,8 +196,8 @@ def test_whatever_is_written_is_parsed_or_refused_with_a_place(text: str, inside
     try:
         parse_chronicles(text)
         report = "<chronicles>:"
-    except ChronicleSyntaxError as error:
-        report = error.report()
+    except SpecificationErrors as errors:
+        report = "".join(error.report() for error in errors.exceptions)
 
     assert report.startswith("<chronicles>:")
 
@@ -144,5 +216,8 @@ def test_a_file_in_another_encoding_is_refused_with_the_byte(tmp_path):
     path = tmp_path / "latin.chronicle"
     path.write_bytes(b"# \xe5\n")
 
-    with pytest.raises(ChronicleSyntaxError, match="UTF-8, found the byte 0xe5 at offset 2"):
+    with pytest.raises(SpecificationErrors) as raised:
         read_chronicles(path)
+    (fault,) = raised.value.exceptions
+    assert isinstance(fault, ChronicleSyntaxError)
+    assert "UTF-8, found the byte 0xe5 at offset 2" in fault.message

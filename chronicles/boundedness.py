@@ -1,0 +1,80 @@
+"""Which partial instances of a chronicle would be kept without end, and for want of what limit.
+
+An instance lives until the deadline of one of the events that it awaits. Instances that have
+seen some events, and await only such as nothing limits, are never given up unless a forbidden
+event ends them.
+"""
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+
+from chronicles.constraints import UNBOUNDED
+from chronicles.expansion import expand
+from chronicles.models import Model, Slot, models_from_chronicles
+from chronicles.syntax import ChronicleFile
+from dyknow.source_text import Span
+
+__all__ = ["UnlimitedEvent", "warnings"]
+
+
+@dataclass(frozen=True, slots=True)
+class UnlimitedEvent:
+    """An event that a partial instance may await without end.
+
+    Attributes:
+        span: Where the event is asked for.
+        message: What to tell about it.
+    """
+
+    span: Span
+    message: str
+
+
+def warnings(file: ChronicleFile) -> list[UnlimitedEvent]:
+    """Return the events of *file*, which has no faults, that need a limit, in reading order."""
+    found: dict[Span, UnlimitedEvent] = {}
+    for chronicle, model in zip(file.chronicles, models_from_chronicles(file), strict=True):
+        events = expand(chronicle, file).events
+        for seen, awaited in unlimited(model):
+            since = model.slots[seen].instant
+            slot = model.slots[awaited]
+            message = (
+                f"chronicle '{model.name}' may await this event without end: nothing limits how"
+                f" long after '{since}' '{slot.instant}' can be"
+            )
+            span = events[awaited].span
+            found.setdefault(span, UnlimitedEvent(span, message))
+    return sorted(found.values(), key=lambda warning: warning.span.start)
+
+
+def unlimited(model: Model) -> Iterator[tuple[int, int]]:
+    """Yield pairs of a slot that has been filled and one that may be awaited without end.
+
+    From each slot on, the slots that are awaited with a limit are taken to be filled as well;
+    if this leaves any open that share a variable with them, they are awaited without end.
+    """
+    for slot in model.slots:
+        filled = _reached(slot, model.slots, model.limits)
+        near = 0
+        for i in filled:
+            near |= model.slots[i].neighbours
+        awaited = [s.index for s in model.slots if near & 1 << s.index and s.index not in filled]
+        possible = all(s.latest == UNBOUNDED for s in model.slots if s.index in awaited)
+        if awaited and possible:
+            yield slot.index, awaited[0]
+
+
+def _reached(
+    start: Slot, slots: Sequence[Slot], limits: Sequence[Sequence[int]]
+) -> dict[int, None]:
+    filled = {start.index: None}
+    waiting = [start]
+    while waiting:
+        slot = waiting.pop()
+        for other in slots:
+            is_near = bool(slot.neighbours & 1 << other.index)
+            if is_near and other.index not in filled:
+                if limits[slot.index][other.index] < UNBOUNDED:
+                    filled[other.index] = None
+                    waiting.append(other)
+    return filled
