@@ -48,6 +48,7 @@ _CELLS = 1 << 21
 _MOST_TABULATED_ATOMS = 8
 _VERDICTS = (Verdict.FALSE, Verdict.TRUE)
 _UNKNOWN = -1
+_DENSE = 16
 _NO_TABLE = np.empty(0, dtype=np.int64)
 
 
@@ -172,7 +173,7 @@ class ProgressionTable:
         table = self._table(elapsed)
         following = table.take(keys, mode="clip")
         if len(following) and following.min() < 0:
-            table = self._fill(elapsed, np.unique(keys[following < 0]))
+            table = self._fill(elapsed, _distinct(keys[following < 0], len(table)))
             following = table.take(keys, mode="clip")
         return following
 
@@ -285,6 +286,15 @@ class ProgressionTable:
         bits = [int.from_bytes(column.tobytes(), "little") for column in pairs[8:].T]
         following = [self.successor(k, b, elapsed) for k, b in zip(numbers, bits, strict=True)]
         return np.array(following, dtype=np.int64)[places]
+
+
+def _distinct(keys: npt.NDArray[np.int64], limit: int) -> npt.NDArray[np.int64]:
+    """Return the different *keys*, which lie below *limit*."""
+    if limit > _DENSE * len(keys):
+        return np.unique(keys)
+    found = np.zeros(limit, dtype=np.bool_)
+    found[keys] = True
+    return np.flatnonzero(found)
 
 
 def _closed_up(times: Times, reach: int) -> Times:
