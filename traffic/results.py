@@ -101,6 +101,18 @@ class Score(_Value):
     recall: float | None
     left_out: int
 
+    @classmethod
+    def of(cls, truth: int, recognised: int, correct: int, left_out: int) -> "Score":
+        """Return a score with precision and recall, where there is something to divide by."""
+        return cls(
+            truth=truth,
+            recognised=recognised,
+            correct=correct,
+            precision=correct / recognised if recognised else None,
+            recall=correct / truth if truth else None,
+            left_out=left_out,
+        )
+
 
 class Lateness(_Value):
     """How a run kept to the clock on the wall.

@@ -14,14 +14,9 @@ def total_score(results: Sequence[RunResult]) -> dict[str, Score]:
 
 
 def _total(scores: Sequence[Score]) -> Score:
-    truth = sum(score.truth for score in scores)
-    recognised = sum(score.recognised for score in scores)
-    correct = sum(score.correct for score in scores)
-    return Score(
-        truth=truth,
-        recognised=recognised,
-        correct=correct,
-        precision=correct / recognised if recognised else None,
-        recall=correct / truth if truth else None,
+    return Score.of(
+        truth=sum(score.truth for score in scores),
+        recognised=sum(score.recognised for score in scores),
+        correct=sum(score.correct for score in scores),
         left_out=sum(score.left_out for score in scores),
     )

@@ -2,31 +2,11 @@
 
 from bisect import bisect_left
 from collections.abc import Iterable
-from typing import Protocol
 
 from dyknow.streams.state_buffers import FOREVER, Buffer
 from dyknow.time import Duration, TimePoint
 
-__all__ = ["Grid", "StateTimes", "Updates"]
-
-
-class StateTimes(Protocol):
-    """The valid times of states, one after the other.
-
-    Attributes:
-        current: The next one to be settled, `FOREVER` if none is known.
-    """
-
-    current: TimePoint
-
-    def note(self, buffer: Buffer, valid_time: TimePoint) -> None:
-        """Take in that an input has a new sample for a state to come."""
-
-    def move_on(self) -> None:
-        """Go on to the time after the current one."""
-
-    def has(self, valid_time: TimePoint) -> bool:
-        """Return whether there is, or was, a state of the valid time of a sample."""
+__all__ = ["Grid", "Updates"]
 
 
 class Grid:
@@ -45,7 +25,7 @@ class Grid:
         if start is not None:
             self.current = self._start = start
 
-    def note(self, buffer: Buffer, valid_time: TimePoint) -> None:  # noqa: ARG002, the protocol's
+    def note(self, buffer: Buffer, valid_time: TimePoint) -> None:  # noqa: ARG002, updates need it
         """Let the buffer forget what lies between two time-points and is of no use to either."""
         samples = buffer.samples
         is_dense = (
@@ -85,7 +65,7 @@ class Updates:
         self.current = FOREVER
         self._times: list[TimePoint] = []
 
-    def note(self, buffer: Buffer, valid_time: TimePoint) -> None:  # noqa: ARG002, the protocol's
+    def note(self, buffer: Buffer, valid_time: TimePoint) -> None:  # noqa: ARG002, a grid needs it
         """Take in that an input has a new sample for a state to come."""
         times = self._times
         if times and times[-1] == valid_time:
@@ -103,7 +83,7 @@ class Updates:
         del self._times[0]
         self.current = self._times[0] if self._times else FOREVER
 
-    def has(self, valid_time: TimePoint) -> bool:  # noqa: ARG002, the protocol's
+    def has(self, valid_time: TimePoint) -> bool:  # noqa: ARG002, a grid needs it
         """Return True: each valid time of a sample is one of a state."""
         return True
 

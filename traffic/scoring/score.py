@@ -208,12 +208,4 @@ def _scores(
 def _score(truths_in_view: Iterable[bool], agreement: Iterable[bool | None]) -> Score:
     seen = list(truths_in_view)
     judged = [agrees for agrees in agreement if agrees is not None]
-    truth, recognised, correct = sum(seen), len(judged), sum(judged)
-    return Score(
-        truth=truth,
-        recognised=recognised,
-        correct=correct,
-        precision=correct / recognised if recognised else None,
-        recall=correct / truth if truth else None,
-        left_out=len(seen) - truth,
-    )
+    return Score.of(sum(seen), len(judged), sum(judged), left_out=seen.count(False))
