@@ -12,6 +12,7 @@ from dyknow.time import MILLISECOND, Duration, TimePoint, text_from_duration
 from traffic.origin import write_origin
 from traffic.recording.changes import changes_since, detail_of
 from traffic.recording.describing import RunDescription
+from traffic.recording.periods import PeriodRepeater
 from traffic.recording.rebuilding import (
     describe,
     open_run,
@@ -144,15 +145,19 @@ class _Replay:
     def _run(self, wanted: RecordingRequest, on_progress: OnProgress) -> RunResult:
         truth = simulation_of(self._recording)
         scorer = None if truth is None else scorer_for(self._world, truth)
-        watch = Watch(self._system, scorer)
+        watch = Watch(self._system, scorer, is_governed=False)
         told = told_of(self._description.origin)
         if not self._recorded.is_complete:
             told = replace(told, duration=Duration(_end_of(self._recording)))
         network = self._world.road_map, truth
         with recorded(wanted, self._description, self._system, *network) as keep:
-            observers = [keep] if scorer is None else [keep, scorer.observe_frame]
-            truths = None if truth is None else FramePacer(truth, observers)
-            return watch.complete(told, on_progress, truths, real_time=self._request.real_time)
+            seen = [keep.observe] if scorer is None else [keep.observe, scorer.observe_frame]
+            kernel = self._system.network.kernel
+            companion = _Companion(
+                PeriodRepeater(kernel, self._recorded.period_changes),
+                None if truth is None else FramePacer(truth, seen),
+            )
+            return watch.complete(told, on_progress, companion, real_time=self._request.real_time)
 
     def _compare(self, computed: Recording) -> Replay:
         topics = self._topics_to_compare(computed)
@@ -201,6 +206,25 @@ class _Replay:
         if self._request.taken or self._is_changed:
             return (before & now) - fed - {VIOLATIONS}
         return (before | (now & {VIOLATIONS})) - fed
+
+
+class _Companion:
+    """Repeats what came to the recorded network from outside, besides its sources."""
+
+    def __init__(self, periods: PeriodRepeater, truths: FramePacer | None) -> None:
+        self._periods = periods
+        self._truths = truths
+
+    def advance(self, now: TimePoint) -> None:
+        """Take note that the work of the instant *now* begins."""
+        self._periods.advance(now)
+        if self._truths is not None:
+            self._truths.advance(now)
+
+    def finish(self) -> None:
+        """Take note that the run is over."""
+        if self._truths is not None:
+            self._truths.finish()
 
 
 def _end_of(recording: Recording) -> TimePoint:

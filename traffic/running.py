@@ -28,7 +28,8 @@ from traffic.errors import RequestError
 from traffic.origin import Origin, origin_of, write_origin
 from traffic.overlaying import Overlay
 from traffic.recording.describing import RunDescription
-from traffic.recording.writing import recorded
+from traffic.recording.periods import KeepPeriods
+from traffic.recording.writing import RunRecorder, recorded
 from traffic.request import DEFAULT_PERIOD, FRAME_PERIOD, RunRequest, View
 from traffic.results import Lateness, RunResult, Timing, new_folder, run_folder, write_result
 from traffic.scoring.score import Scorer, Verdict, unjudged
@@ -119,7 +120,9 @@ def run_scenario(request: RunRequest, on_progress: OnProgress) -> tuple[RunResul
             _film(request, camera, watch),
             _recording(request, description, system, world, simulation) as keep,
         ):
-            vehicles.observers.append(keep)
+            if keep is not None:
+                vehicles.observers.append(keep.observe)
+                watch.keep_periods = keep.keep_periods
             told = told_of(description.origin)
             result = watch.complete(told, on_progress, real_time=request.real_time)
         write_network(system.network, folder)
@@ -133,9 +136,17 @@ class Watch:
     Args:
         system: The system, before it runs.
         scorer: Knows the truth, from outside; None if nothing does.
+        is_governed: Whether streams may stand back when the work falls behind the clock.
+
+    Attributes:
+        keep_periods: Told what has been changed because of that.
     """
 
-    def __init__(self, system: MonitoringSystem, scorer: Scorer | None) -> None:
+    def __init__(
+        self, system: MonitoringSystem, scorer: Scorer | None, *, is_governed: bool = True
+    ) -> None:
+        self.keep_periods: KeepPeriods = lambda _: None
+        self._is_governed = is_governed
         self._network = system.network
         self._scorer = scorer if _CARS in outputs_of_sort(system.specification, _CARS) else None
         self._recognitions: list[Recognition] = []
@@ -186,8 +197,8 @@ class Watch:
         pace = _Pace(kernel, told.deadline) if real_time else None
 
         def tell(now: TimePoint) -> None:
-            if pace is not None:
-                pace.governor.watch(now)
+            if pace is not None and self._is_governed and pace.has_changed(now):
+                self.keep_periods(pace.governor.changes)
             if companion is not None:
                 companion.advance(now)
             on_progress(now / SECOND, total)
@@ -321,10 +332,10 @@ def _recording(
     system: MonitoringSystem,
     world: World,
     simulation: Simulation,
-) -> Iterator[Callable[[Frame], None]]:
+) -> Iterator[RunRecorder | None]:
     """Record what the system does while the block lasts, if that was asked for."""
     if request.recording is None:
-        yield lambda _: None
+        yield None
         return
     parts = system, world.road_map, simulation
     with recorded(request.recording, description, *parts) as keep:
@@ -377,6 +388,12 @@ class _Pace:
         self.clock = WallClock(deadline)
         settings = GovernorSettings(late_after=deadline)
         self.governor = LoadGovernor(kernel, lambda: self.clock.last_lateness, settings)
+
+    def has_changed(self, now: TimePoint) -> bool:
+        """Let streams stand back, or no longer; return whether any did."""
+        before = len(self.governor.changes)
+        self.governor.watch(now)
+        return len(self.governor.changes) > before
 
     def lateness(self) -> Lateness:
         """Return how late the work was done."""

@@ -1,7 +1,7 @@
 """What a recording says of its run besides the streams: enough to make the same system again."""
 
 import json
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -9,11 +9,13 @@ from typing import Any
 from pydantic import ValidationError
 
 from dyknow.kpl.syntax import Specification
+from dyknow.service.governor import PeriodChange
 from traffic.errors import ReplayError
 from traffic.origin import Origin
+from traffic.recording.periods import changes_from_text, text_from_changes
 from traffic.system import specification_from
 
-__all__ = ["COMPLETE", "RunDescription"]
+__all__ = ["COMPLETE", "RunDescription", "metadata_of_periods"]
 
 COMPLETE = {"complete": "yes"}
 """What a recording says in the end, if it has got there."""
@@ -23,6 +25,12 @@ _PLACE = "specification.place"
 _PARAMETERS = "parameters"
 _OUTPUTS = "outputs"
 _ORIGIN = "origin"
+_PERIODS = "period_changes"
+
+
+def metadata_of_periods(changes: Sequence[PeriodChange]) -> dict[str, str]:
+    """Return as texts for a recording which sample periods have been changed so far."""
+    return {_PERIODS: text_from_changes(changes)} if changes else {}
 
 
 @dataclass(frozen=True, slots=True)
@@ -36,6 +44,7 @@ class RunDescription:
         parameters: The values that were given to its parameters.
         outputs: The output streams that were asked for.
         is_complete: Whether the recording goes to the end of the run.
+        period_changes: The sample periods that were changed because of the load.
     """
 
     origin: Origin
@@ -44,6 +53,7 @@ class RunDescription:
     parameters: Mapping[str, Any]
     outputs: tuple[str, ...]
     is_complete: bool = True
+    period_changes: tuple[PeriodChange, ...] = ()
 
     @property
     def specification(self) -> Specification:
@@ -68,6 +78,7 @@ class RunDescription:
             _PARAMETERS: json.dumps(dict(self.parameters)),
             _OUTPUTS: json.dumps(self.outputs),
             _ORIGIN: self.origin.model_dump_json(),
+            **metadata_of_periods(self.period_changes),
         }
 
     @classmethod
@@ -89,6 +100,7 @@ class RunDescription:
                 parameters=json.loads(metadata.get(_PARAMETERS, "{}")),
                 outputs=tuple(json.loads(metadata.get(_OUTPUTS, "[]"))),
                 is_complete=COMPLETE.items() <= metadata.items(),
+                period_changes=changes_from_text(metadata.get(_PERIODS, "[]")),
             )
         except (ValidationError, ValueError, TypeError) as error:
             said = str(error).splitlines()[0]

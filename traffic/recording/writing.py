@@ -15,13 +15,14 @@ from google.protobuf.message import Message
 from dyknow.kpl.plan import Network
 from dyknow.recordings.recorder import Recorder
 from dyknow.runtime.generators import Label
+from dyknow.service.governor import PeriodChange
 from dyknow.source_text import nearest_name
 from dyknow.streams.sample import Sample
 from dyknow.time import TimePoint
 from networks.roads import RoadMap
 from traffic.errors import RequestError
 from traffic.recording.codecs import CODECS
-from traffic.recording.describing import COMPLETE, RunDescription
+from traffic.recording.describing import COMPLETE, RunDescription, metadata_of_periods
 from traffic.recording.views import (
     JPEG_QUALITY,
     CarScenes,
@@ -42,7 +43,7 @@ from traffic.system import (
     sort_of,
 )
 
-__all__ = ["recorded"]
+__all__ = ["RunRecorder", "recorded"]
 
 _RECORDER = Label("recorder")
 _LOSSY = {"about": f"lossy: JPEG of quality {JPEG_QUALITY}, to be looked at; not for a replay"}
@@ -59,8 +60,8 @@ def recorded(
     system: MonitoringSystem,
     road_map: RoadMap,
     simulation: Simulation | None,
-) -> Iterator[Observe]:
-    """Record what *system* does while the block lasts; give what is to be shown each frame.
+) -> Iterator["RunRecorder"]:
+    """Record what *system* does while the block lasts; give what else is to be told of the run.
 
     The truth is recorded too, if there is a *simulation* that knows it.
 
@@ -82,8 +83,24 @@ def recorded(
             "view/map", SceneUpdate, lambda sample: scene_of_map(sample.value)
         )
         show_map(Sample(road_map, TimePoint(0), TimePoint(0)))
-        yield _keeping(recorder, simulation)
+        yield RunRecorder(_keeping(recorder, simulation), recorder)
         recorder.annotate(COMPLETE)
+
+
+class RunRecorder:
+    """Is told of a run what its network does not tell.
+
+    Attributes:
+        observe: Takes the frames of the simulation.
+    """
+
+    def __init__(self, observe: Observe, recorder: Recorder) -> None:
+        self.observe = observe
+        self._recorder = recorder
+
+    def keep_periods(self, changes: Sequence[PeriodChange]) -> None:
+        """Take note of which sample periods have been changed so far."""
+        self._recorder.annotate(metadata_of_periods(changes))
 
 
 def _keeping(recorder: Recorder, simulation: Simulation | None) -> Observe:

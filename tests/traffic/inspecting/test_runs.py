@@ -72,6 +72,20 @@ def test_the_command_shows_tables(run):
         assert text in shown.output
 
 
+@pytest.mark.parametrize("columns", ["80", "200", None])
+def test_labels_are_never_cut(run, columns):
+    """On a narrow screen they go on in the next line; a pipe gets lines of any length."""
+    network, _ = read_network(run)
+    shown = CliRunner(env={"COLUMNS": columns}).invoke(app, ["inspect", str(run)])
+
+    assert shown.exit_code == 0, shown.output
+    assert "…" not in shown.output
+    words = set(shown.output.split())
+    for stream in network.streams:
+        assert words.issuperset(stream.provider.split() if columns else [stream.provider])
+        assert any(stream.name.startswith(word) for word in words)
+
+
 def test_the_command_prints_json(run):
     """With --json the snapshot is printed as it is in the file."""
     shown = CliRunner().invoke(app, ["inspect", str(run), "--json"])
