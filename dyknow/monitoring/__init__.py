@@ -14,10 +14,12 @@ order:
 - `evaluation`: a formula, or several, that are being evaluated
 - `sharing`: streams of states that several evaluations need
 - `reasoner`: adds formulas to a network that may be running, and removes them
+- `plans`: the formulas of the actions of a plan, while these are executed
 """
 
 from dyknow.monitoring.evaluation import Evaluation
 from dyknow.monitoring.interpretation import Interpretation
+from dyknow.monitoring.plans import PlanMonitor
 from dyknow.monitoring.reasoner import EvaluationSettings, StreamReasoner
 from dyknow.monitoring.unit import Decision, OnGap
 
@@ -27,5 +29,6 @@ __all__ = [
     "EvaluationSettings",
     "Interpretation",
     "OnGap",
+    "PlanMonitor",
     "StreamReasoner",
 ]

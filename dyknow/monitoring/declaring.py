@@ -132,7 +132,7 @@ def declarations_of_verdicts(
     """Declare the stream of verdicts on formulas, and an output without which it is not made."""
     written = [text if each == name else f"{each}: {text}" for each, text in formulas.items()]
     settings = [
-        Setting("name", Name(name)),
+        Setting("name", Text(name)),
         Setting("formulas", Values(tuple(map(Text, written)))),
     ]
     verdicts = label(VERDICTS, name)

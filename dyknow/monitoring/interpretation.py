@@ -5,7 +5,7 @@ reasoning integrated with ROS', section V).
 """
 
 import re
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from difflib import get_close_matches
 
@@ -18,10 +18,14 @@ from dyknow.mtl import syntax
 from dyknow.mtl.printer import text_from_formula
 from dyknow.mtl.syntax import Feature
 from dyknow.streams.selecting import FieldPath
+from dyknow.time import TimePoint
 
-__all__ = ["Constant", "Interpretation", "Origin", "origins_of"]
+__all__ = ["Constant", "Fluent", "Interpretation", "Origin", "origins_of"]
 
 Constant = bool | float | str
+
+Fluent = Callable[[TimePoint], Constant]
+"""What holds at a valid time, as far as the program itself knows it."""
 
 _TARGET = re.compile(r"([A-Za-z_]\w*)(?:\[([^\[\].]*)\])?((?:\.[A-Za-z_]\w*)*)")
 _OBJECT = re.compile(r"[A-Za-z_]\w*")
@@ -45,6 +49,8 @@ class Interpretation:
         constants: What a name without objects stands for, such as a limit.
         domains: The objects that quantifiers range over. A name of one of them, wherever it
             stands alone, is the object.
+        known: Features with their objects, as they are printed, that come from no stream because
+            the program knows them itself, such as what it is doing.
 
     Raises:
         ValueError: A label is none, or a domain is no sequence of names.
@@ -53,6 +59,7 @@ class Interpretation:
     features: Mapping[str, str] = field(default_factory=dict)
     constants: Mapping[str, Constant] = field(default_factory=dict)
     domains: Mapping[str, Sequence[str]] = field(default_factory=dict)
+    known: Mapping[str, Fluent] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         for feature, target in self.features.items():
@@ -71,6 +78,7 @@ class Interpretation:
             {**self.features, **other.features},
             {**self.constants, **other.constants},
             {**self.domains, **other.domains},
+            {**self.known, **other.known},
         )
 
     def constant(self, name: str) -> Constant | None:
@@ -78,6 +86,12 @@ class Interpretation:
         if name in self.constants:
             return self.constants[name]
         return name if any(name in objects for objects in self.domains.values()) else None
+
+    def needs_stream(self, feature: Feature) -> bool:
+        """Return whether a stream has to give the values of a feature."""
+        if text_from_formula(feature) in self.known:
+            return False
+        return bool(feature.arguments) or self.constant(feature.name) is None
 
 
 @dataclass(frozen=True, slots=True)

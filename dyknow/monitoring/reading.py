@@ -6,10 +6,11 @@ from typing import Any
 import numpy as np
 
 from dyknow.errors import FeatureError
-from dyknow.monitoring.interpretation import Constant, Origin
+from dyknow.monitoring.interpretation import Constant, Fluent, Origin
 from dyknow.streams.sample import NO_VALUE
 from dyknow.streams.selecting import find_field
 from dyknow.streams.table import Table, positions_of
+from dyknow.time import TimePoint
 
 __all__ = ["StateReader"]
 
@@ -22,6 +23,7 @@ class StateReader:
         origins: Iterable[Origin],
         streams: Sequence[str],
         constants: Mapping[str, Constant],
+        known: Mapping[str, Fluent] | None = None,
     ) -> None:
         """Read features by their origins.
 
@@ -29,7 +31,9 @@ class StateReader:
             origins: Where the values of the features come from.
             streams: The labels of the streams whose values make a state, in their order.
             constants: What is the same in every state.
+            known: Features that the program knows itself.
         """
+        self._known = dict(known or {})
         self._constants = dict(constants)
         place = {label: at for at, label in enumerate(streams)}
         self._plain: list[tuple[str, int]] = []
@@ -45,8 +49,8 @@ class StateReader:
                 self._plain.append((origin.feature, at))
         self._rows = {at: _Rows(found) for at, found in rows.items()}
 
-    def read(self, state: tuple[Any, ...]) -> dict[str, Any]:
-        """Return the value of each feature, and the constants.
+    def read(self, state: tuple[Any, ...], time: TimePoint) -> dict[str, Any]:
+        """Return the value of each feature in the state of a valid time, and the constants.
 
         Raises:
             FeatureError: A feature has no value in the state.
@@ -61,6 +65,8 @@ class StateReader:
             values[origin.feature] = _field(origin, state[at])
         for at, rows in self._rows.items():
             values.update(rows.read(state[at]))
+        for feature, fluent in self._known.items():
+            values[feature] = fluent(time)
         return values
 
 

@@ -149,7 +149,8 @@ class StreamReasoner:
         streams = tuple(dict.fromkeys(origin.stream for origin in origins))
         states = self._states.find(streams, constraints)
         states = states or StateStream(_new_label(declared), streams, constraints)
-        reader = StateReader(origins, states.streams, constants_in(ground.values(), meaning))
+        constants = constants_in(ground.values(), meaning)
+        reader = StateReader(origins, states.streams, constants, meaning.known)
         unit = FormulaUnit(_group(ground, settings.time_model), reader, settings.on_gap)
         unit.on_decided = self._teller(on_violation)
         evaluation = Evaluation(name, f"{VERDICTS}[{name}]", states.label, origins, unit)
@@ -210,7 +211,7 @@ class StreamReasoner:
     def _check_name(self, name: str) -> None:
         if name in self._evaluations:
             raise EvaluationAlreadyExistsError(name)
-        if not is_name(name):
+        if not is_name(name) or name in self.network.declarations.parameters:
             raise ValueError(f"expected a name that can stand in a label, found '{name}'")
 
     def _declare(
@@ -260,11 +261,7 @@ def _origins(
     name: str, formulas: Collection[Formula], meaning: Interpretation, declared: Declarations
 ) -> tuple[Origin, ...]:
     """Return where the features of formulas come from."""
-    features = [
-        feature
-        for feature in extract_symbols(formulas).features
-        if feature.arguments or meaning.constant(feature.name) is None
-    ]
+    features = [each for each in extract_symbols(formulas).features if meaning.needs_stream(each)]
     if not features:
         raise NoFeaturesError(name, [text_from_formula(each) for each in formulas])
     return origins_of(features, meaning, declared)

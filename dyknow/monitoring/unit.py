@@ -107,7 +107,8 @@ class FormulaUnit(Reactive):
         if gap is not None:
             return self._end(gap, state.valid_time, now)
         try:
-            decided = self.group.step(state.valid_time, self._reader.read(state.value))
+            values = self._reader.read(state.value, state.valid_time)
+            decided = self.group.step(state.valid_time, values)
         except FeatureError as fault:
             return self._leave_out(state, str(fault), now)
         self._reached = state.valid_time

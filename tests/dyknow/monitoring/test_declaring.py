@@ -53,7 +53,7 @@ def test_declarations_are_texts_of_kpl():
         "compunit verdict EvaluateFormulas(any)\n"
         "strmgen states_1 = sync(fast, slow[a, b] with from 120) with sample every 50, use most "
         "recent, from 450 to 900\n"
-        "strmgen verdicts[f] = EvaluateFormulas(states_1, name = f, formulas = "
+        'strmgen verdicts[f] = EvaluateFormulas(states_1, name = "f", formulas = '
         '["x = \\"\\\\\\\\\\"", "g: y = \\"\\\\\\"\\""])\n'
         "stream verdicts[f] = verdicts[f]\n"
     )

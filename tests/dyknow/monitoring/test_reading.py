@@ -10,6 +10,7 @@ from dyknow.monitoring.interpretation import Origin
 from dyknow.monitoring.reading import StateReader
 from dyknow.streams.sample import NO_VALUE
 from dyknow.streams.table import Table
+from tests.support.streams import ms
 
 
 @dataclass
@@ -37,13 +38,16 @@ def test_each_feature_finds_its_value():
         SPEED,
         LANE,
     ]
-    reader = StateReader(origins, ["cars", "flag", "pose[uav1]"], {"limit": 3})
+    reader = StateReader(
+        origins, ["cars", "flag", "pose[uav1]"], {"limit": 3}, {"at": lambda time: time}
+    )
     cars = _cars([7, 3], speed=[1.5, 2.5], lane=["A", "B"])
 
-    values = reader.read((cars, True, Pose(4.0, {"north": np.float64(2)})))
+    values = reader.read((cars, True, Pose(4.0, {"north": np.float64(2)})), ms(7))
 
     assert values == {
         "limit": 3,
+        "at": ms(7),
         "p": True,
         "height(uav1)": 4.0,
         "wind(uav1)": 2.0,
@@ -82,5 +86,5 @@ def test_each_feature_finds_its_value():
 def test_what_is_missing_is_told_by_its_feature(origin, value, message):
     """With what was expected and what was found."""
     with pytest.raises(FeatureError) as caught:
-        StateReader([origin], [origin.stream], {}).read((value,))
+        StateReader([origin], [origin.stream], {}).read((value,), ms(0))
     assert message in str(caught.value)
