@@ -220,6 +220,29 @@ def test_verdicts_are_a_stream_like_any_other():
     reasoner.remove("apart")
 
 
+def test_formulas_come_and_go_within_an_instant():
+    """What receives a sample may add and remove them; that has its effect after the instant."""
+    times = range(0, 600, 100)
+    reasoner = _distances(dict.fromkeys(times, 20), {t: 60 - t / 10 for t in times})
+    reasoner.network.add("stream far = XYDist[uav3, uav1]")
+    added = []
+
+    def receive(sample):
+        if sample.valid_time == ms(200):
+            added.append(reasoner.add("near", "eventually XYDist[uav3, uav1] < 45"))
+            added.append(reasoner.add("gone", "eventually XYDist[uav3, uav1] < 45"))
+        if sample.valid_time == ms(300):
+            reasoner.remove("gone")
+
+    reasoner.network.subscribe("far", receive)
+    reasoner.network.kernel.run()
+
+    near, gone = added
+    assert (near.verdict, near.decided_at) == (TRUE, ms(200))
+    assert gone.verdict is TRUE
+    assert list(reasoner.evaluations) == ["near"]
+
+
 def test_a_violated_formula_calls_for_recovery_exactly_once():
     """The action may change what is monitored; a formula that becomes true calls for none."""
     times = range(0, 400, 20)
