@@ -8,6 +8,8 @@ A benchmark measures and never judges. Read in this order:
 - `workloads`: the networks that are measured
 - `streams`, `tables`, `synchronisation`, `recordings`, `memory`: the benchmarks; `peers`: the
   same work done by other libraries, if they are installed
+- `sequences`: the formulas and states of `progression`, a benchmark; `monitor_peers`: other
+  libraries for monitoring
 - `registry`: all benchmarks by name; to add one, write a module and name it there
 - `pictures`: results as pictures
 """

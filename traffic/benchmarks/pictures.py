@@ -68,7 +68,8 @@ def draw(experiment: Experiment, result: BenchmarkResult) -> Figure:
 
 def _draw_published(panel: Axes, experiment: Experiment, published: Published) -> None:
     x, y = zip(*published.points, strict=True)
-    panel.plot(x, y, "o-", color=_PUBLISHED, markersize=4, linewidth=1.2)
+    mark = "o-" if len(x) <= _FEW else "-"
+    panel.plot(x, y, mark, color=_PUBLISHED, markersize=4, linewidth=1.2)
     panel.set_title(f"{published.source}\n{fill(published.remark, 58)}", fontsize=8)
     panel.set_ylabel(f"{experiment.y}, {published.unit}")
 

@@ -4,7 +4,7 @@ import time
 from pathlib import Path
 
 from dyknow.time import Duration, duration_from_text
-from traffic.benchmarks import memory, recordings, streams, synchronisation, tables
+from traffic.benchmarks import memory, progression, recordings, streams, synchronisation, tables
 from traffic.benchmarks.machine import this_machine
 from traffic.benchmarks.measuring import Benchmark, OnProgress, Plan
 from traffic.benchmarks.pictures import write_pictures
@@ -18,6 +18,7 @@ BENCHMARKS: dict[str, Benchmark] = {
     "streams": streams.BENCHMARK,
     "tables": tables.BENCHMARK,
     "synchronisation": synchronisation.BENCHMARK,
+    "progression": progression.BENCHMARK,
     "recordings": recordings.BENCHMARK,
     "memory": memory.BENCHMARK,
 }

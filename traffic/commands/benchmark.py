@@ -11,7 +11,10 @@ __all__ = ["benchmark"]
 
 def benchmark(
     name: Annotated[
-        str, typer.Argument(help="streams, tables, synchronisation, recordings or memory.")
+        str,
+        typer.Argument(
+            help="streams, tables, synchronisation, progression, recordings or memory."
+        ),
     ],
     *,
     out: Annotated[
