@@ -11,8 +11,9 @@ from dyknow.errors import (
     UnknownNameError,
 )
 from dyknow.mtl import syntax
-from dyknow.mtl.check import BOOLEAN, NUMBER, TEXT, faults
-from dyknow.mtl.parser import parse_formula
+from dyknow.mtl.check import BOOLEAN, NUMBER, TEXT, Vocabulary
+from dyknow.mtl.declarations import document_faults, domains_of, vocabulary_of
+from dyknow.mtl.parser import parse_document
 from dyknow.mtl.printer import text_from_formula
 from dyknow.mtl.quantifiers import Domains, expand
 from dyknow.mtl.syntax import Feature, Formula, Node, descendants, parts
@@ -23,6 +24,7 @@ __all__ = ["Question", "domains_from", "forbid_missing", "read_question"]
 
 _ENDING = ".mtl"
 _LONGEST_NAME = 4096
+_VALUES = frozenset({BOOLEAN, NUMBER, TEXT})
 
 
 @dataclass(frozen=True)
@@ -31,8 +33,8 @@ class Question:
 
     Attributes:
         formula: The formula.
-        sorts: Printed term of each feature in it to its sort, or None if the formula only
-            compares it with other features.
+        sorts: Printed term of each feature in it to its sort, or None if it is not declared and
+            the formula only compares it with other features.
         places: Printed term of each feature to where it is written first.
     """
 
@@ -43,6 +45,8 @@ class Question:
 
 def read_question(text: str, domains: Domains) -> Question:
     """Read a formula, or the file of a formula, and write its quantifiers out.
+
+    There may be declarations before the formula (`dyknow.mtl.declarations`).
 
     Raises:
         FormulaSyntaxError: The text is not a formula.
@@ -58,12 +62,14 @@ def read_question(text: str, domains: Domains) -> Question:
             text = path.read_text(encoding="utf-8")
         except UnicodeDecodeError:
             raise RequestError("FORMULA", "a text in UTF-8", path) from None
-    formula = parse_formula(text, name)
-    found = [*faults(formula), *_unknown_domains(formula, domains)]
-    _raise_if_any(found)
-    _forbid_unused(formula, domains)
-    ground = expand(formula, domains)
-    return Question(ground, *_features_of(ground))
+    document = parse_document(text, name)
+    formula, vocabulary = document.formula, vocabulary_of(document)
+    declared = domains_of(document)
+    known = {**declared, **domains}
+    _raise_if_any([*document_faults(document), *_unknown_domains(formula, known, vocabulary)])
+    _forbid_without_effect(domains, formula, declared)
+    ground = expand(formula, known)
+    return Question(ground, *_features_of(ground, vocabulary))
 
 
 def domains_from(texts: Sequence[str]) -> dict[str, tuple[str, ...]]:
@@ -133,22 +139,30 @@ def _quantified(formula: Formula) -> Iterator[syntax.Name]:
             yield node.domain
 
 
-def _unknown_domains(formula: Formula, domains: Domains) -> Iterator[SpecificationError]:
+def _unknown_domains(
+    formula: Formula, known: Domains, vocabulary: Vocabulary | None
+) -> Iterator[SpecificationError]:
+    """Yield the domains without objects; a sort that is not declared is a fault already."""
     for domain in _quantified(formula):
-        if domain.name not in domains:
-            nearest = nearest_name(domain.name, domains)
+        is_declared = vocabulary is None or domain.name in vocabulary.domains
+        if is_declared and domain.name not in known:
+            nearest = nearest_name(domain.name, known)
             yield UnknownNameError("domain", domain.name, domain.span, nearest)
 
 
-def _forbid_unused(formula: Formula, domains: Domains) -> None:
+def _forbid_without_effect(domains: Domains, formula: Formula, declared: Domains) -> None:
     used = {domain.name for domain in _quantified(formula)}
     for name in domains:
         if name not in used:
             known = f"one of {', '.join(sorted(used))}" if used else "none: there is no quantifier"
             raise RequestError("--domain", f"a domain of the formula ({known})", name)
+        if name in declared:
+            raise RequestError("--domain", "a domain without declared objects", name)
 
 
-def _features_of(formula: Formula) -> tuple[Mapping[str, str | None], Mapping[str, Span]]:
+def _features_of(
+    formula: Formula, vocabulary: Vocabulary | None
+) -> tuple[Mapping[str, str | None], Mapping[str, Span]]:
     """Return the sort and the place of each feature.
 
     Raises:
@@ -166,6 +180,9 @@ def _features_of(formula: Formula) -> tuple[Mapping[str, str | None], Mapping[st
         elif sort is not None and sort != known:
             fault = SortMismatchError(f"'{term}'", known, sort, feature.span)
             found.setdefault(feature.span, fault)
+        if sorts[term] is None and vocabulary is not None:
+            declared = vocabulary.features[feature.name].sort
+            sorts[term] = declared if declared in _VALUES else TEXT
     _raise_if_any(list(found.values()))
     return sorts, places
 

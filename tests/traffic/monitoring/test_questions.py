@@ -114,6 +114,46 @@ def test_a_domain_without_effect_is_refused(text):
         read_question(text, {"car": ("a",), "bus": ("b",)})
 
 
+DECLARED = """
+sort car = car1, car2
+sort bus
+feature lane(car): text
+feature at(car): car
+always forall x in car forall y in car (lane(x) = lane(y) and at(x) = at(y))
+"""
+
+
+def test_declarations_are_obeyed():
+    """Declared objects need not be given, and declared sorts need not be guessed."""
+    question = read_question(DECLARED, {})
+
+    assert question.sorts == {
+        "lane(car1)": "text", "at(car1)": "text", "lane(car2)": "text", "at(car2)": "text",
+    }  # fmt: skip
+    with pytest.raises(RequestError, match="expected a domain without declared objects"):
+        read_question(DECLARED, {"car": ("car3",)})
+
+
+@pytest.mark.parametrize(
+    ("formula", "message"),
+    [
+        ("exists x in bus true", "no domain called 'bus'"),
+        ("exists x in tram true", "no domain called 'tram'"),
+        ('forall x in car lanes(x) = "a"', "no feature called 'lanes'; did you mean 'lane'?"),
+        ("lane(car1)", "must be of sort 'boolean', found 'text'"),
+    ],
+)
+def test_declarations_are_held_against_the_formula(formula, message):
+    """What is not declared is a fault, told once."""
+    declarations = DECLARED[: DECLARED.index("always")]
+
+    with pytest.raises(SpecificationErrors) as raised:
+        read_question(declarations + formula, {})
+
+    (fault,) = raised.value.exceptions
+    assert message in str(fault)
+
+
 def test_missing_features_are_told_once_for_each_place():
     """Every place of the formula that needs a feature which is not there, and the nearest name."""
     domain = {"car": tuple(f"car{n}" for n in range(50))}
