@@ -2,37 +2,17 @@
 
 import json
 from collections.abc import Callable, Mapping
-from typing import Any, Protocol
+from typing import Protocol
 
+from dyknow.kpl.description import NetworkDescription
+from dyknow.kpl.network import Network
 from dyknow.recordings.taps import GeneratorTap, StreamTap
-from dyknow.runtime.generators import Label, Receive, StreamGenerator
+from dyknow.runtime.generators import Label, StreamGenerator
 from dyknow.runtime.kernel import Kernel
 from dyknow.runtime.names import input_name, output_name
 from dyknow.runtime.subscriptions import StreamProxy, StreamViolation
 
-__all__ = ["Attachment", "DeclaredNetwork", "Taps", "Wanted"]
-
-
-class DeclaredNetwork(Protocol):
-    """A network that was made from a specification, as `dyknow.kpl` makes it."""
-
-    @property
-    def kernel(self) -> Kernel:
-        """What runs it."""
-
-    @property
-    def outputs(self) -> tuple[str, ...]:
-        """The names of its output streams."""
-
-    @property
-    def description(self) -> object:
-        """What it is made of, as plain data."""
-
-    def subscribe(self, output: str, receive: Receive) -> StreamProxy:
-        """Hand the samples of an output stream to *receive*."""
-
-    def subscribe_changes(self, receive: Callable[[Any], object]) -> Callable[[], None]:
-        """Tell *receive* of each change; return what ends that."""
+__all__ = ["Attachment", "Taps", "Wanted"]
 
 
 class Taps(Protocol):
@@ -64,7 +44,7 @@ class Attachment:
     recorded streams are.
     """
 
-    def __init__(self, taps: Taps, network: DeclaredNetwork | Kernel, wanted: Wanted) -> None:
+    def __init__(self, taps: Taps, network: Network | Kernel, wanted: Wanted) -> None:
         self._taps = taps
         self._network = None if isinstance(network, Kernel) else network
         self._kernel = network if isinstance(network, Kernel) else network.kernel
@@ -145,23 +125,26 @@ class Attachment:
 class _About:
     """What the description of a network says about its streams, as texts."""
 
-    def __init__(self, description: Any) -> None:
-        known = description or {"generators": [], "outputs": []}
+    def __init__(self, description: NetworkDescription | None) -> None:
+        known = description or NetworkDescription(generators=[], outputs=[])
         self._generators = {each["label"]: each for each in known["generators"]}
         self._outputs = {each["name"]: each for each in known["outputs"]}
 
     def generator(self, label: str) -> Mapping[str, str]:
         """Return what is said about a stream generator and its process."""
-        return _texts(self._generators.get(label, {}))
+        described = self._generators.get(label)
+        return {} if described is None else _texts(described)
 
     def input(self, label: str, number: int) -> Mapping[str, str]:
         """Return what is said about an input of a process."""
-        inputs = self._generators.get(label, {}).get("inputs", [])
-        return _texts(next((each for each in inputs if each["number"] == number), {}))
+        described = self._generators.get(label)
+        inputs = [] if described is None else described["inputs"]
+        return next((_texts(each) for each in inputs if each["number"] == number), {})
 
     def output(self, name: str) -> Mapping[str, str]:
         """Return what is said about an output."""
-        return _texts(self._outputs.get(name, {}))
+        described = self._outputs.get(name)
+        return {} if described is None else _texts(described)
 
 
 def _texts(described: Mapping[str, object]) -> dict[str, str]:

@@ -7,7 +7,8 @@ from typing import Any, Self
 
 from google.protobuf.message import Message
 
-from dyknow.recordings.attaching import Attachment, DeclaredNetwork
+from dyknow.kpl.network import Network
+from dyknow.recordings.attaching import Attachment
 from dyknow.recordings.channels import ChannelRole, Description
 from dyknow.recordings.codecs import Codec
 from dyknow.recordings.formats import FORMAT, FORMAT_RECORD, TEXTS_RECORD, sealed_texts
@@ -152,7 +153,7 @@ class Recorder:
 
     def attach(
         self,
-        network: DeclaredNetwork | Kernel,
+        network: Network | Kernel,
         labels: Collection[str] | None = None,
         without: Collection[str] = (),
     ) -> Attachment:
