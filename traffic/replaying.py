@@ -25,9 +25,10 @@ from traffic.recording.rebuilding import (
 from traffic.recording.writing import recorded
 from traffic.request import RecordingRequest, labels_from
 from traffic.results import Replay, RunResult, StreamDifference, run_folder, write_result
-from traffic.running import OnProgress, Watch, scorer_for, told_of, write_network
+from traffic.running import scorer_for, write_network
 from traffic.sumo.replayed import TRUTH, FramePacer
 from traffic.system import outputs_behind, read_specification
+from traffic.watching import OnProgress, Watch, told_of
 
 __all__ = ["ReplayRequest", "replay"]
 

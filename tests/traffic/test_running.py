@@ -7,25 +7,22 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from dyknow.errors import ProcessError, SpecificationErrors
+from dyknow.errors import SpecificationErrors
 from dyknow.kpl.names import streams_of
 from dyknow.kpl.syntax import GeneratorDeclaration, Label, Name
-from dyknow.runtime.clock import WallClock
-from dyknow.streams.sample import Sample
-from dyknow.streams.table import Table
-from dyknow.time import MILLISECOND, SECOND, Duration, TimePoint
+from dyknow.time import MILLISECOND, TimePoint
 from networks.reading import read_road_map
 from perception.camera import Calibration, Camera
+from tests.support.standing_cars import StandingCars
 from traffic.bundled import data_folder
 from traffic.errors import RequestError, ResultError
 from traffic.request import RunRequest
 from traffic.results import read_result
-from traffic.running import Told, Watch, run_scenario
+from traffic.running import run_scenario
 from traffic.system import (
     MonitoringSystem,
     bundled_specification,
     read_specification,
-    specification_from,
 )
 from traffic.world import World
 
@@ -94,72 +91,6 @@ def test_a_run_keeps_what_is_needed_to_understand_it(tmp_path):
         run(tmp_path / "x", duration="2 s")
 
 
-class Vehicles:
-    """Three cars that stand in a crossing, for a second at 25 Hz."""
-
-    def samples(self):
-        """Yield them as the simulator would."""
-        columns = {
-            "position": np.array([[-8.0, 2.0], [5.0, -3.0], [12.0, 3.0]]),
-            "heading": np.zeros(3),
-            "speed": np.zeros(3),
-            "length": np.full(3, 4.5),
-            "width": np.full(3, 1.8),
-            "height": np.full(3, 1.5),
-            "colour": np.full((3, 3), 200, dtype=np.uint8),
-            "vehicle_class": np.zeros(3, dtype=np.int8),
-        }
-        for i in range(100):
-            time = TimePoint(i * 40 * MILLISECOND)
-            yield Sample(Table("vehicle", np.arange(3) + 1000, columns), time, time)
-
-
-PERCEPTS = """
-source vehicles vehicles
-strmgen vehicles = vehicles
-compunit percepts NoisyPositions(vehicles)
-"""
-
-
-def watched(text, seconds=1, **options):
-    """Let a system of three standing cars run for some seconds; return its result."""
-    world = World(read_road_map(CROSSING), Vehicles(), None, np.random.default_rng(1))
-    specification = specification_from(PERCEPTS + text, "x.kpl")
-    system = MonitoringSystem(world, {}, specification=specification)
-    told = Told("x", {}, duration=Duration(seconds * SECOND), deadline=Duration(40 * MILLISECOND))
-    return Watch(system, None).complete(told, lambda *_: None, **options)
-
-
-def test_violations_are_counted_by_stream():
-    """Frames come every 40 ms, so that every 30 ms one is missing; each is counted once."""
-    result = watched("""
-        strmgen percepts[a] = NoisyPositions(vehicles with sample every 30, error = 0)
-        strmgen percepts[b] = NoisyPositions(vehicles, error = 0)
-        stream a = percepts[a] with any update
-        stream b = percepts[b] with sample every 40, max delay 0
-        """)
-
-    assert set(result.violations) == {"percepts[a]/1"}
-    assert result.violations["percepts[a]/1"] > 10
-
-
-def test_a_process_that_fails_and_ends_is_told():
-    """The rest goes on, where the specification says so; without that the run ends."""
-    text = """
-        compunit any StableFor(any)
-        strmgen percepts = NoisyPositions(vehicles, error = 0)
-        strmgen steady = StableFor(percepts, columns = nothing, duration = 1){}
-        stream percepts = percepts
-        stream steady = steady
-        """
-    result = watched(text.replace("{}", " on failure end"))
-
-    (failure,) = result.failures
-    assert failure.startswith("process 'steady' failed at 0 ms: KeyError: 'nothing'")
-    with pytest.raises(ProcessError, match="'steady' failed at 0 ms"):
-        watched(text.replace("{}", ""))
-
-
 @pytest.mark.sumo
 def test_a_changed_specification_is_run(tmp_path):
     """Its copy is kept; parameters that it does not have cannot be set."""
@@ -209,53 +140,13 @@ def test_a_source_that_the_world_lacks_is_refused(tmp_path):
     assert [each.name for each in tmp_path.iterdir()] == ["x.kpl"]
 
 
-def test_real_time_changes_nothing_but_the_pace():
-    """A second takes a second; how late the work was done is measured."""
-    text = "strmgen percepts = NoisyPositions(vehicles, error = 3)\nstream p = percepts"
-    fast, paced = watched(text), watched(text, real_time=True)
-
-    assert fast.timing.lateness is None
-    assert paced.timing.lateness is not None
-    assert paced.timing.lateness.max_ms >= paced.timing.lateness.mean_ms >= 0
-    assert paced.timing.wall_s >= 1
-    assert fast.model_copy(update={"timing": None}) == paced.model_copy(update={"timing": None})
-
-
-class _Late(WallClock):
-    """A clock by which all work is late, and for which nobody waits."""
-
-    def await_instant(self, instant):
-        """Return at once."""
-
-    def finish(self, instant):
-        """Call the work 100 ms late."""
-        self.last_lateness = Duration(100 * MILLISECOND)
-
-
-def test_work_that_falls_behind_lets_streams_stand_back(monkeypatch):
-    """After a second of being late a stream is sampled less often, if it says that it may be."""
-    monkeypatch.setattr("traffic.running.WallClock", _Late)
-    text = """
-        parameter slack = 40
-        strmgen percepts = NoisyPositions(
-            vehicles with sample every 40 up to slack under load, error = 0)
-        stream p = percepts
-        """
-    firm = watched(text, seconds=3, real_time=True)
-    yielding = watched(text.replace("slack = 40", "slack = 80"), seconds=3, real_time=True)
-
-    assert firm.timing.lateness.period_changes == 0
-    assert yielding.timing.lateness.period_changes == 1
-    assert yielding.violations == {}
-
-
 @pytest.mark.parametrize("view", ["vision", "truth"])
 def test_percepts_tell_nothing_that_a_camera_cannot_see(view):
     """A percept has the columns of vision in both views: no lane, no name, no road."""
     calibration = Calibration.from_field_of_view(width=320, height=180, horizontal=1.0)
     camera = Camera.looking_at(0.0, 0.0, 60.0, heading=0.0, calibration=calibration)
     generator = np.random.Generator(np.random.PCG64(1))
-    world = World(read_road_map(CROSSING), Vehicles(), camera, generator)
+    world = World(read_road_map(CROSSING), StandingCars(), camera, generator)
     parameters = {"view": view, "sample_period": 100.0, "position_noise": 0.0}
     system = MonitoringSystem(world, parameters, ("percepts",))
     tables = []
