@@ -13,6 +13,7 @@ __all__ = [
     "Event",
     "Recognition",
     "event_from_json",
+    "event_from_recognition",
     "json_from_event",
     "json_from_recognition",
     "json_from_time",
@@ -83,6 +84,21 @@ def event_from_json(document: Mapping[str, Any]) -> Event:
         from_value=None if is_message else _value(document.get("from"), "from"),
         to_value=None if is_message else _text(document, "to"),
         time=TimePoint(milliseconds(time)),
+    )
+
+
+def event_from_recognition(recognition: Recognition) -> Event:
+    """Return the event that *recognition* is for other chronicles.
+
+    It is named after the chronicle, has its arguments, happens when it was recognised, and has
+    its beginning and its end, in milliseconds, as the values before and after.
+    """
+    return Event(
+        attribute=recognition.chronicle,
+        arguments=tuple(recognition.arguments.values()),
+        from_value=str(json_from_time(recognition.begin)),
+        to_value=str(json_from_time(recognition.end)),
+        time=recognition.recognised_at,
     )
 
 

@@ -115,7 +115,7 @@ class Stage:
             for c in model.counters
             if self.knows(c.begin)
             and bound.issuperset(c.pattern.variables)
-            and (self.is_complete or c.most is not None)
+            and (self.is_complete or (c.most is not None and c.end < len(slots)))
         )
         self.members: Bucket = {}
         self._indexes: dict[tuple[str, ...], Index] = {}

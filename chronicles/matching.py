@@ -32,6 +32,12 @@ class Matcher:
         model: The chronicle.
         agenda: Where instances that time decides about are put.
         on_match: Called with each match and the time from when on nothing could take it back.
+
+    Attributes:
+        model: The chronicle.
+        limit: How many instances are kept; None for any number.
+        on_end: Called with each instance that can no longer become complete, and why.
+        on_given_up: Called with how many of the oldest instances were given up.
     """
 
     def __init__(
@@ -43,6 +49,10 @@ class Matcher:
         self._watches: dict[Counter, list[Watch]] = {c: [] for c in model.counters}
         self._counted = {c: CountedEvents(c) for c in model.counters if c.looks_back}
         self._sweep_at = _LEAST_TO_SWEEP
+        self._n_instances = 0
+        self.limit: int | None = None
+        self.on_end: Callable[[Matcher, Instance, str], None] | None = None
+        self.on_given_up: Callable[[Matcher, int], None] | None = None
         self._joiner = Joiner(model, self._new_stage, self._admit)
 
     def handlers(self) -> Iterator[tuple[str, str | None, Handler]]:
@@ -60,6 +70,11 @@ class Matcher:
         """Yield all partial instances."""
         for stage in self._joiner.stages.values():
             yield from stage.members
+
+    def clear(self) -> None:
+        """Forget all instances."""
+        for instance in list(self.instances()):
+            self._remove(instance)
 
     @property
     def keeps_counts(self) -> bool:
@@ -112,7 +127,7 @@ class Matcher:
     def _review(self, instance: Instance, clock: int) -> None:
         """Decide about an instance that is due."""
         if not instance.stage.is_complete:
-            self._kill(instance)
+            self._end(instance, "deadline")
         else:
             self._judge(instance, clock)
 
@@ -129,9 +144,7 @@ class Matcher:
         deadline = min([latest[i] for i in stage.awaited])
         if deadline < now:
             return
-        stage.add(instance)
-        for watch in stage.watches:
-            stage.watch(watch, watch.key(instance.values), instance)
+        self._add(instance)
         if deadline < UNBOUNDED:
             self._agenda.schedule(instance, deadline + INSTANT)
 
@@ -162,7 +175,32 @@ class Matcher:
                 latest[i] = bound + limits[i]
         return min([latest[i] for i in instance.stage.awaited]) >= now
 
-    def _kill(self, instance: Instance) -> None:
+    def _add(self, instance: Instance) -> None:
+        self._n_instances += 1
+        stage = instance.stage
+        stage.add(instance)
+        for watch in stage.watches:
+            stage.watch(watch, watch.key(instance.values), instance)
+
+    def keep_to_limit(self) -> None:
+        """Give up the oldest instances if there are more than the limit."""
+        if self.limit is None or self._n_instances <= self.limit:
+            return
+        n = self._n_instances - self.limit + self.limit // 16
+        oldest = sorted(self.instances(), key=_age)[:n]
+        for instance in oldest:
+            self._end(instance, "limit")
+        if self.on_given_up is not None:
+            self.on_given_up(self, len(oldest))
+
+    def _end(self, instance: Instance, reason: str) -> None:
+        """Remove an instance that can no longer become complete."""
+        if self.on_end is not None:
+            self.on_end(self, instance, reason)
+        self._remove(instance)
+
+    def _remove(self, instance: Instance) -> None:
+        self._n_instances -= 1
         instance.stage.remove(instance)
         self._agenda.withdraw(instance)
 
@@ -203,7 +241,7 @@ class Matcher:
         if excess is None:
             return
         if not self._limit_end(watch, instance, excess, now):
-            self._kill(instance)
+            self._end(instance, _excess_of(counter))
             return
         due = min([instance.latest[i] for i in instance.stage.awaited]) + INSTANT
         if due < UNBOUNDED and due != instance.due:
@@ -215,7 +253,7 @@ class Matcher:
         if counter.looks_back:
             self._judge(instance, now)
         elif now < instance.times[counter.end] + counter.end_offset:
-            self._kill(instance)
+            self._end(instance, _excess_of(counter))
 
     def _excess(self, watch: Watch, instance: Instance, begin: int) -> int | None:
         """Return when the first event from *begin* on came that is one too many, if it has."""
@@ -235,9 +273,7 @@ class Matcher:
         if not model.counters:
             self._on_match(self, instance, now)
             return
-        instance.stage.add(instance)
-        for watch in instance.stage.watches:
-            instance.stage.watch(watch, watch.key(instance.values), instance)
+        self._add(instance)
         self._judge(instance, now)
 
     def _judge(self, instance: Instance, clock: int) -> None:
@@ -251,15 +287,24 @@ class Matcher:
             elif end > clock:
                 ends.append(end)
             else:
-                self._kill(instance)
+                self._end(instance, self._failure(watch, instance))
                 return
         if ends:
             due = min(ends)
             if due != instance.due:
                 self._agenda.schedule(instance, due)
             return
-        self._kill(instance)
+        self._remove(instance)
         self._on_match(self, instance, settled_at)
+
+    def _failure(self, watch: Watch, instance: Instance) -> str:
+        """Return why the counter of *watch* fails."""
+        counter = watch.counter
+        begin = instance.times[counter.begin] + counter.begin_offset
+        end = instance.times[counter.end] + counter.end_offset
+        counted = self._counted.get(counter)
+        n = 0 if counted is None else counted.count(watch.key(instance.values), begin, end)
+        return "too few events" if n < counter.least else _excess_of(counter)
 
     def _standing(self, watch: Watch, instance: Instance, clock: int) -> tuple[int | None, int]:
         """Return since when the counter is settled, and the end of its interval.
@@ -285,6 +330,14 @@ class Matcher:
         if end > clock:
             return (None, end)
         return (end, end) if n >= counter.least else never
+
+
+def _age(instance: Instance) -> int:
+    return min(instance.times[i] for i in instance.stage.filled)
+
+
+def _excess_of(counter: Counter) -> str:
+    return "too many events" if counter.most else "forbidden event"
 
 
 def _pass(tests: Iterable[tuple[int, int, int]], times: Sequence[int]) -> bool:

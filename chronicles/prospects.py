@@ -12,7 +12,7 @@ from chronicles.syntax import EventAt, EventType, Parameter, Value, Variable
 from dyknow.source_text import MADE_IN_PYTHON
 from dyknow.time import TimePoint
 
-__all__ = ["Awaited", "PartialInstance", "partial_instance"]
+__all__ = ["Awaited", "EndedInstance", "PartialInstance", "partial_instance"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -48,6 +48,22 @@ class PartialInstance:
     instants: dict[str, TimePoint]
     events: tuple[Event, ...]
     awaited: tuple[Awaited, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class EndedInstance:
+    """A partial instance that can no longer become complete.
+
+    Attributes:
+        instance: What had been seen, and what was awaited.
+        reason: Why: `deadline`, `forbidden event`, `too many events`, `too few events`, or
+            `limit` if it was given up because there were too many.
+        time: When that was known.
+    """
+
+    instance: PartialInstance
+    reason: str
+    time: TimePoint
 
 
 def partial_instance(model: Model, instance: Instance, clock: int) -> PartialInstance:

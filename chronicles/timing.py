@@ -6,7 +6,7 @@ the earliest and the latest of its instants. If the constraints leave open which
 it is known when all of them are.
 """
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 
 from chronicles.constraints import UNBOUNDED, ZERO, Bound, TemporalNetwork, bounds_of
@@ -72,12 +72,12 @@ def timing_of(expansion: Expansion) -> Timing:
     used |= {name for bound in bounds for name in (bound.later, bound.earlier)}
     extremes = {name: e for name, e in expansion.extremes.items() if name in used}
     names = tuple(dict.fromkeys([*anchors, *extremes, *sorted(used)]))
-    network = TemporalNetwork(names, [*bounds, *_bounds_of_extremes(extremes, bounds)])
+    network, determined = _network(names, extremes, bounds)
     if not network.consistent:
         return Timing(network, {name: Place(name, 0) for name in names}, {}, ())
     places = {name: Place(name, 0) for name in anchors}
-    for name, extreme in extremes.items():
-        places[name] = Place(_determined(extreme, network) or name, 0)
+    for name in extremes:
+        places[name] = Place(determined.get(name, name), 0)
     for name in names:
         if name not in places and name != ZERO:
             place = _place(name, [*anchors, *extremes], places, network)
@@ -88,15 +88,33 @@ def timing_of(expansion: Expansion) -> Timing:
     return Timing(network, places, open_extremes, tests)
 
 
-def _bounds_of_extremes(
-    extremes: Mapping[str, Extreme], bounds: Iterable[Bound]
-) -> Iterable[Bound]:
-    # Any constraint will do as the one that says so: a circle has at least one that was written.
-    first = next(iter(bounds), None)
+def _network(
+    names: tuple[str, ...], extremes: Mapping[str, Extreme], bounds: Iterable[Bound]
+) -> tuple[TemporalNetwork, dict[str, str]]:
+    """Return the minimal network, and which instants are an extreme whatever happens."""
+    found = [*bounds, *_bounds_of_extremes(extremes)]
+    determined: dict[str, str] = {}
+    while True:
+        network = TemporalNetwork(names, found)
+        if not network.consistent:
+            return network, determined
+        new = {
+            name: member
+            for name, extreme in extremes.items()
+            if name not in determined and (member := _determined(extreme, network)) is not None
+        }
+        if not new:
+            return network, determined
+        determined.update(new)
+        for name, member in new.items():
+            found += [Bound(name, member, 0, None), Bound(member, name, 0, None)]
+
+
+def _bounds_of_extremes(extremes: Mapping[str, Extreme]) -> Iterator[Bound]:
     for name, extreme in extremes.items():
         for member in extreme.members:
-            pair = (name, member) if not extreme.is_end else (member, name)
-            yield Bound(*pair, 0, first.constraint if first else None)
+            pair = (member, name) if extreme.is_end else (name, member)
+            yield Bound(*pair, 0, None)
 
 
 def _determined(extreme: Extreme, network: TemporalNetwork) -> str | None:

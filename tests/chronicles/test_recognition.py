@@ -1,161 +1,42 @@
 """The recogniser against the meaning of chronicles, and its promises one by one."""
 
-from collections.abc import Iterator
 from itertools import groupby
 
+import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 from chronicles.check import faults
 from chronicles.events import Event, Recognition
+from chronicles.expansion import expand
 from chronicles.models import models_from_chronicles
 from chronicles.parser import parse_chronicles
 from chronicles.recognition import Recogniser
-from chronicles.syntax import (
-    Chronicle,
-    Comparison,
-    Difference,
-    EventAt,
-    EventType,
-    Instant,
-    Length,
-    NoEvent,
-    Occurs,
-    Relation,
-    Value,
-    Variable,
-    Within,
-)
+from chronicles.semantics import Match, matches
+from chronicles.syntax import ChronicleFile
 from dyknow.time import MILLISECOND, TimePoint
 
 MS = int(MILLISECOND)
 
-# The meaning, written down naively.
-
-
-def matches(event_type: EventType, event: Event, known: dict[str, str]) -> dict[str, str] | None:
-    """Return the variables after matching, or None."""
-    change = event_type.change
-    if (change is None) != (event.from_value is None and event.to_value is None):
-        return None
-    parameters = [*event_type.arguments, *((change.before, change.after) if change else ())]
-    values = [*event.arguments, *((event.from_value, event.to_value) if change else ())]
-    if event.attribute != event_type.name or len(values) != len(parameters):
-        return None
-    known = dict(known)
-    for parameter, value in zip(parameters, values, strict=True):
-        if isinstance(parameter, Value) and value != parameter.text:
-            return None
-        if isinstance(parameter, Variable) and (
-            value is None or known.setdefault(parameter.name, value) != value
-        ):
-            return None
-    return known
-
-
-def assignments(
-    chronicle: Chronicle, events: list[Event]
-) -> Iterator[tuple[dict[str, int], dict[str, str]]]:
-    """Yield all ways to meet the `event` predicates."""
-
-    def extend(predicates, times, values):
-        if not predicates:
-            yield times, values
-            return
-        first, *others = predicates
-        for event in events:
-            if times.get(first.instant, event.time) != event.time:
-                continue
-            extended = matches(first.event_type, event, values)
-            if extended is not None:
-                yield from extend(others, {**times, first.instant: event.time}, extended)
-
-    predicates = [s for s in chronicle.statements if isinstance(s, EventAt)]
-    yield from extend(predicates, {}, {})
-
-
-def amount(operand: object, times: dict[str, int]) -> int:
-    """Return the number that a temporal expression stands for."""
-    match operand:
-        case Instant(_, name, offset):
-            return times[name] + offset
-        case Difference(_, later, earlier, offset):
-            return times[later] - times[earlier] + offset
-        case Length(_, duration):
-            return duration
-    raise AssertionError(operand)
-
-
-def holds(statement: object, times: dict[str, int], values: dict[str, str]) -> bool:
-    """Return whether a constraint holds."""
-    match statement:
-        case Comparison(_, operands, orders):
-            left = [amount(operand, times) for operand in operands]
-            tests = {
-                "<": lambda a, b: a < b,
-                "<=": lambda a, b: a <= b,
-                "=": lambda a, b: a == b,
-                ">": lambda a, b: a > b,
-                ">=": lambda a, b: a >= b,
-            }
-            return all(tests[o](a, b) for o, a, b in zip(orders, left, left[1:], strict=False))
-        case Within(_, difference, interval):
-            length = amount(difference, times)
-            lower, upper = interval.lower, interval.upper
-            return (lower is None or lower <= length) and (upper is None or length <= upper)
-        case Relation(_, variable, sign, other):
-            text = other.text if isinstance(other, Value) else values[other.name]
-            return (values[variable.name] == text) == (sign == "==")
-    return True
-
-
-def settled_at(statement: object, times, values, events: list[Event]) -> float | None:
-    """Return from when on a counter holds for good; None if it never does."""
-    match statement:
-        case NoEvent(_, event_type, begin, end):
-            least, most = 0, 0
-        case Occurs(_, least, most, event_type, begin, end):
-            pass
-        case _:
-            return float("-inf")
-    first, last = amount(begin, times), amount(end, times)
-    counted = [
-        event.time
-        for event in events
-        if first <= event.time < last and matches(event_type, event, values) is not None
-    ]
-    if len(counted) < least or (most is not None and len(counted) > most):
-        return None
-    if first >= last:
-        return float("-inf")
-    if most is not None:
-        return last
-    return sorted(counted)[least - 1] if least else float("-inf")
-
-
-def enumerate_recognitions(
-    chronicle: Chronicle, events: list[Event], clock: int
-) -> list[tuple[object, ...]]:
-    """Return all recognitions by the meaning of the chronicle alone."""
-    facts = {(e.time, e.attribute, e.arguments, e.from_value, e.to_value): e for e in events}
-    distinct = list(facts.values())
-    found = set()
-    for times, values in assignments(chronicle, distinct):
-        if not all(holds(statement, times, values) for statement in chronicle.statements):
-            continue
-        settled = [settled_at(s, times, values, distinct) for s in chronicle.statements]
-        if None in settled:
-            continue
-        at = max(*settled, *times.values())
-        if at <= clock:
-            found.add((at, tuple(sorted(times.items())), tuple(sorted(values.items()))))
-    return sorted(found)
-
-
 # Random models and streams.
 
 VARIABLES = ["?x", "?y", "?z"]
-SIGNALS = {"a": (1, True), "b": (2, True), "m": (0, False), "n": (1, False)}
+SIGNALS = {"a": (1, True), "b": (2, True), "m": (0, False), "n": (1, False), "sub": (1, False)}
+SUB = "chronicle sub[?k] { event(n[?k], t) noevent(m, (t + 1, t + 3)) } "
+PRELUDE = """
+domain D = {u} | {w}
+constraint near(p, q) { p <= q + 1; q - p <= 4 }
+constraint unlike[?p, ?q] { ?p != ?q or ?p in D }
+"""
+
+
+TIMES = ["end - start <= 4", "end - start >= 3", "2 <= end - start", "t1 <= 6", "start in [1, 9]"]
+CONDITIONS = [
+    "if ?BOUND0 == u then ?BOUND1 == v else ?BOUND1 in D",
+    "?BOUND0 == u => ?BOUND1 not in {u}",
+    "?BOUND0 == u <=> not (?BOUND1 == v and ?BOUND0 != ?BOUND1)",
+    "unlike[?BOUND0, ?BOUND1]",
+]
 
 
 @st.composite
@@ -186,8 +67,20 @@ def chronicle_texts(draw: st.DrawFn) -> str:
     instants = sorted(set(names))
     pick = st.sampled_from(instants)
     offset = st.sampled_from(["", "", " + 1", " - 1", " + 2", " - 3"])
+    lines += draw(st.lists(st.sampled_from(TIMES), max_size=1))
+    if draw(st.booleans()):
+        counted = draw(event_types(bound))
+        lines.append(f"event({counted}, {draw(pick)} + {draw(st.sampled_from(['1', '[0, 2]']))})")
+    if len(bound) > 1:
+        lines += draw(st.lists(st.sampled_from(CONDITIONS), max_size=1))
+    stars = st.sampled_from(["*s != u", "*s in D", "*s not in ~D"])
+    if any("*s" in line for line in lines) and draw(st.booleans()):
+        lines.append(draw(stars))
+    if draw(st.integers(0, 3)) == 0 and not any("late" in line for line in lines):
+        lines.append(f"{draw(pick)} = late - 2; occurs(0, 1, m, (late - 2, late))")
+    extremes = [*instants, "start", "end"]
     for _ in range(draw(st.integers(0, 3))):
-        first, second = draw(pick), draw(pick)
+        first, second = draw(st.sampled_from(extremes)), draw(st.sampled_from(extremes))
         if first != second:
             order = draw(st.sampled_from(["<", "<=", "<=", "<", "=", ">="]))
             lower = draw(st.integers(-2, 3))
@@ -204,7 +97,8 @@ def chronicle_texts(draw: st.DrawFn) -> str:
                 )
             )
     for _ in range(draw(st.integers(0, 2))):
-        interval = f"({draw(pick)}{draw(offset)}, {draw(pick)}{draw(offset)})"
+        anchor = st.sampled_from(extremes)
+        interval = f"({draw(anchor)}{draw(offset)}, {draw(anchor)}{draw(offset)})"
         counted = draw(event_types(bound))
         least = draw(st.integers(0, 2))
         most = draw(st.sampled_from(["oo", least, least + 1]))
@@ -221,7 +115,9 @@ def chronicle_texts(draw: st.DrawFn) -> str:
     if len(bound) > 1 and draw(st.booleans()):
         lines.append(f"{bound[0]} {draw(st.sampled_from(['!=', '==']))} {bound[1]}")
     parameters = f"[{', '.join(bound)}]" if bound else ""
-    return f"chronicle c{parameters} {{ {'; '.join(lines)} }}"
+    for i, name in enumerate(bound):
+        lines = [line.replace(f"?BOUND{i}", name) for line in lines]
+    return f"{PRELUDE}{SUB}chronicle c{parameters} {{ {'; '.join(lines)} }}"
 
 
 @st.composite
@@ -232,7 +128,7 @@ def streams(draw: st.DrawFn) -> list[Event]:
     time = 0
     for _ in range(draw(st.integers(0, 9))):
         time += draw(st.sampled_from([0, 0, 1, 1, 2, 3]))
-        name = draw(st.sampled_from(sorted(SIGNALS)))
+        name = draw(st.sampled_from(["a", "b", "m", "n"]))
         arity, is_attribute = SIGNALS[name]
         arguments = tuple(draw(value) for _ in range(arity))
         before = draw(st.sampled_from(["u", "v", None])) if is_attribute else None
@@ -241,11 +137,25 @@ def streams(draw: st.DrawFn) -> list[Event]:
     return events
 
 
-def flat(recognition: Recognition) -> tuple[object, ...]:
-    """Return a recognition in the form of the naive enumeration."""
+def flat(recognition: Recognition, names: set[str]) -> Match:
+    """Return a recognition in the form of the meaning."""
     values = {f"?{name}": value for name, value in recognition.arguments.items()}
-    times = tuple(sorted(recognition.instants.items()))
-    return (recognition.recognised_at, times, tuple(sorted(values.items())))
+    times = {name: time for name, time in recognition.instants.items() if name in names}
+    return Match(
+        recognition.recognised_at, tuple(sorted(times.items())), tuple(sorted(values.items()))
+    )
+
+
+def events_of_sub(file: ChronicleFile, events: list[Event], end: int) -> list[Event]:
+    """Return the events that the recognitions of the chronicle `sub` are."""
+    (sub,) = [chronicle for chronicle in file.chronicles if chronicle.name == "sub"]
+    found = []
+    for match in matches(sub, file, events, end):
+        time = dict(match.times)["t"] // MS
+        arguments = (dict(match.values)["?k"],)
+        moment = TimePoint(match.recognised_at)
+        found.append(Event("sub", arguments, str(time), str(time), moment))
+    return found
 
 
 def run(recogniser: Recogniser, events: list[Event], end: int) -> list[Recognition]:
@@ -277,7 +187,11 @@ def test_recogniser_agrees_with_the_meaning(
         clock = event.time
     found += recogniser.advance(TimePoint(end))
 
-    assert sorted(map(flat, found)) == enumerate_recognitions(file.chronicles[0], events, end)
+    chronicle = file.chronicles[1]
+    names = {event.instant for event in expand(chronicle, file).events}
+    expected = matches(chronicle, file, [*events, *events_of_sub(file, events, end)], end)
+    told = [flat(one, names) for one in found if one.chronicle == "c"]
+    assert sorted(told) == expected
 
 
 # The promises one by one.
@@ -463,3 +377,100 @@ def test_memory_stays_flat_over_a_long_stream():
 
     assert n_found == 10_000
     assert sizes < 10_000
+
+
+def test_an_included_chronicle_says_what_it_would_say_in_place():
+    """Inclusion binds instants by place and by name; everything else is the included one's own."""
+    text = (
+        "chronicle pair[?x](u) {{ event(a[?x], u) event(b[?x], v) u < v <= u + 50 }} "
+        "chronicle c[?x] {{ event(d[?x], t) {} t <= e }}"
+    )
+    events = [message("a", 1, "x"), message("d", 2, "x"), message("b", 9, "x")]
+
+    for included in (
+        "chronicle pair[?x] (s, v = e)",
+        "chronicle pair[?x] (start = s, end = e)",
+        "event(a[?x], s) event(b[?x], e) s < e <= s + 50",
+    ):
+        recogniser = recogniser_of(text.format(included))
+        found = [one for event in events for one in recogniser.push(event.time, [event])]
+        (one,) = [one for one in found if one.chronicle == "c"]
+        times = {name: one.instants[name] // MS for name in ("t", "s", "e")}
+        assert times == {"t": 2, "s": 1, "e": 9}
+
+
+def test_recognitions_are_events_of_other_chronicles():
+    """A chronicle can ask for recognitions, with beginning and end as values."""
+    recogniser = recogniser_of(
+        "chronicle pair[?x] { event(a[?x], t1) event(b[?x], t2) t1 < t2 <= t1 + 9 }"
+        " chronicle two[?x, ?s, ?e] { event(pair[?x]:(?s, ?e), t1) event(pair[?x], t2) t1 < t2 }"
+    )
+    found = []
+    for name, time in [("a", 1), ("b", 3), ("a", 5), ("b", 6)]:
+        event = message(name, time, "x")
+        found += recogniser.push(event.time, [event])
+
+    # The pair (5, 6) and the pair (1, 6) are both recognised at 6: in `two`, t1 is at 3.
+    assert [one.arguments for one in found if one.chronicle == "two"] == [
+        {"x": "x", "s": "1", "e": "3"}
+    ]
+
+
+def test_chronicles_are_registered_and_withdrawn_while_running():
+    """A new chronicle sees what comes later; one that is withdrawn leaves nothing behind."""
+    quiet = models_from_chronicles(
+        parse_chronicles("chronicle q { event(a, t1) noevent(b, (t1, t1 + 10)) }")
+    )
+    recogniser = Recogniser()
+    recogniser.push(TimePoint(0), [message("a", 0)])
+    recogniser.register(quiet)
+    with pytest.raises(ValueError, match="'q' is recognised already"):
+        recogniser.register(quiet)
+    assert recogniser.push(TimePoint(5 * MS), [message("a", 5)]) == []
+
+    recogniser.withdraw("q")
+
+    assert recogniser.partial_instances() == []
+    assert recogniser.advance(TimePoint(100 * MS)) == []
+    assert recogniser.size() == 0
+    with pytest.raises(ValueError, match="no chronicle called 'r'"):
+        recogniser.withdraw("r")
+
+
+def test_the_oldest_instances_are_given_up_beyond_the_limit(caplog):
+    """The number of partial instances is limited, and who was given up is told."""
+    ended = []
+    text = "chronicle c[?x] { event(a[?x], t1) event(b[?x], t2) t1 < t2 }"
+    models = models_from_chronicles(parse_chronicles(text))
+    recogniser = Recogniser(models, limit=4, on_end=ended.append)
+
+    told(recogniser, *(message("a", i, f"v{i}") for i in range(6)))
+
+    assert [one.values["x"] for one in recogniser.partial_instances()] == ["v2", "v3", "v4", "v5"]
+    assert [(one.instance.values["x"], one.reason) for one in ended] == [
+        ("v0", "limit"),
+        ("v1", "limit"),
+    ]
+    assert recogniser.n_given_up == {"c": 2}
+    assert "chronicle 'c' has more than 4 partial instances" in caplog.text
+
+
+@pytest.mark.parametrize(
+    ("tail", "events", "reason"),
+    [
+        ("event(b, t2) t1 < t2 <= t1 + 5", [], "deadline"),
+        ("noevent(b, (t1, t1 + 9))", [("b", 3)], "forbidden event"),
+        ("occurs(0, 1, b, (t1, t1 + 9))", [("b", 3), ("b", 4)], "too many events"),
+        ("occurs(2, 3, b, (t1, t1 + 9))", [("b", 3)], "too few events"),
+    ],
+)
+def test_an_instance_that_dies_says_why(tail, events, reason):
+    """The reason is the predicate that can no longer hold."""
+    ended = []
+    text = f"chronicle c {{ event(a, t1) {tail} }}"
+    recogniser = Recogniser(models_from_chronicles(parse_chronicles(text)), on_end=ended.append)
+
+    told(recogniser, message("a", 0), *(message(name, time) for name, time in events))
+    recogniser.advance(TimePoint(100 * MS))
+
+    assert [one.reason for one in ended] == [reason]

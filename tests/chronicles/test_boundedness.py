@@ -1,0 +1,25 @@
+"""Events that partial instances may await without end."""
+
+import pytest
+
+from chronicles.boundedness import warnings
+from chronicles.parser import parse_chronicles
+
+
+@pytest.mark.parametrize(
+    ("constraints", "awaited"),
+    [
+        ("t1 <= t2 <= t1 + 5; t2 < t3", ["d"]),
+        ("t1 <= t2 <= t3", ["b", "d"]),
+        ("end - start <= 100", []),
+        ("t1 < t2 < t3 <= t1 + 9", []),
+        ("t1 <= t2 <= t3 <= 5000", []),
+    ],
+)
+def test_events_without_a_limit_are_told(constraints: str, awaited: list[str]) -> None:
+    """An event is told if nothing limits how long after those before it it can come."""
+    text = f"chronicle c[?x] {{ event(a[?x], t1) event(b[?x], t2) event(d[?x], t3) {constraints} }}"
+
+    found = warnings(parse_chronicles(text))
+
+    assert [text[one.span.start :][6] for one in found] == awaited
