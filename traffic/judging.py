@@ -70,8 +70,6 @@ def judge_recording(
         RequestError: The specification cannot be read, or has none of the recorded outputs.
         NetworkError: The network of roads cannot be read.
     """
-    if specification is not None and not specification.is_file():
-        raise RequestError("SPECIFICATION", "a file that can be read", specification)
     with open_run(path) as recording:
         return JudgedRun(path, specification, _judged(recording, specification, on_progress))
 
@@ -120,7 +118,9 @@ def _plain_time(time: TimePoint | None) -> float | None:
 
 def _judged(recording: Recording, path: Path | None, on_progress: OnProgress | None) -> Judgement:
     description = describe(recording)
-    specification = description.specification if path is None else read_specification(path)
+    specification = (
+        description.specification if path is None else read_specification(path, "SPECIFICATION")
+    )
     outputs = _outputs(specification, description, path)
     build = _Builder(description, specification, outputs, world_of(recording))
     network = declared_network(build, SORTS, _SAID_AGAIN)
@@ -132,7 +132,8 @@ def _judged(recording: Recording, path: Path | None, on_progress: OnProgress | N
     judgement = _about_images(judgement, network, image_labels(specification))
     if execution.is_whole:
         return judgement
-    rest = f"what came after {text_from_duration(execution.until)}: the recording ends there"
+    end = text_from_duration(execution.until + 1)
+    rest = f"what came from {end} ms on: the recording ends there"
     return replace(judgement, unjudged=(*judgement.unjudged, rest))
 
 

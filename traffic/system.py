@@ -214,8 +214,12 @@ def bundled_specification() -> Path:
     return data_folder() / "specifications" / _SPECIFICATION
 
 
-def read_specification(path: Path | None = None) -> Specification:
+def read_specification(path: Path | None = None, option: str = "--specification") -> Specification:
     """Return the specification of a file, the bundled one by default, checked.
+
+    Args:
+        path: The file.
+        option: Where a user wrote its name.
 
     Raises:
         SpecificationErrors: The specification has faults.
@@ -225,9 +229,9 @@ def read_specification(path: Path | None = None) -> Specification:
     try:
         text = path.read_text(encoding="utf-8")
     except OSError as error:
-        raise RequestError("--specification", "a file that can be read", path) from error
+        raise RequestError(option, "a file that can be read", path) from error
     except UnicodeDecodeError as error:
-        raise RequestError("--specification", "a text in UTF-8", path) from error
+        raise RequestError(option, "a text in UTF-8", path) from error
     return specification_from(text, str(path))
 
 

@@ -1,6 +1,7 @@
 """Recorded runs are judged, and what is wrong with a recording is found."""
 
 import json
+import re
 from dataclasses import replace
 from itertools import islice
 from pathlib import Path
@@ -286,7 +287,7 @@ def test_a_run_that_was_cut_off_is_judged_as_far_as_it_goes(
 
     assert judgement.is_satisfied
     (rest,) = judgement.unjudged
-    assert rest.endswith("the recording ends there")
+    assert re.fullmatch(r"what came from \d+ ms on: the recording ends there", rest)
 
 
 def test_what_was_recovered_is_judged_before_the_gap(recording: Path, tmp_path: Path) -> None:
@@ -326,5 +327,7 @@ def test_files_that_cannot_be_used_are_refused(recording: Path, tmp_path: Path) 
         judge_recording(recording, other)
     with pytest.raises(RequestError, match="SPECIFICATION: expected a file that can be read"):
         judge_recording(recording, tmp_path / "none.kpl")
+    with pytest.raises(RequestError, match="SPECIFICATION: expected a text in UTF-8"):
+        judge_recording(recording, recording)
     result = CliRunner().invoke(app, ["judge", "a", "b", "c"])
     assert isinstance(result.exception, RequestError)

@@ -73,7 +73,7 @@ def run(plan: Plan, on_progress: OnProgress) -> Findings:
     )
 
 
-BENCHMARK = Benchmark("Memory over eight simulated hours.", run, has_duration=True)
+BENCHMARK = Benchmark("Memory over hours of simulated time.", run, has_duration=True)
 
 
 class _Signal:

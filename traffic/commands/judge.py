@@ -25,8 +25,8 @@ def judge(
 ) -> None:
     """Judge whether every recorded stream is what the specification says.
 
-    Exit status: 0 if the run satisfies the specification, 1 if it does not, 2 if a file
-    cannot be used.
+    Exit status: 0 if the run satisfies the specification, 1 if it does not,
+    2 if a file cannot be used.
     """
     from pydantic_core import to_json
 

@@ -36,8 +36,8 @@ def replay(
 ) -> None:
     """Run the system again on what was recorded, and compare every stream with what it was.
 
-    If nothing has changed since the recording, a stream that differs is a fault of the program,
-    and the exit status is 1.
+    If nothing has changed since then, a stream that differs is a fault of the
+    program, and the exit status is 1.
     """
     from traffic.commands.showing import progress, show_result
     from traffic.replaying import ReplayRequest
