@@ -48,10 +48,14 @@ from traffic.benchmarks.sequences import (
 
 __all__ = ["BENCHMARK"]
 
-_NANOSECONDS, _MICROSECONDS, _MEGABYTE = 1e9, 1e6, 1e6
+_MICROSECONDS, _MEGABYTE = 1e6, 1e6
+_NANOSECONDS = 1e3
+"""In a microsecond."""
+
 _IN_TIME = 100_000
 """Microseconds until the next state."""
 
+_REGULAR, _WITH_JITTER = 0, 1
 _N_VARIANTS = 16
 _AT_ONCE = 1_000
 _MACHINE = "DRC computer of the UAV, a Pentium-M of 1.4 GHz"
@@ -142,7 +146,7 @@ class _Bench:
             x="formulas at once",
             y="average time for a state",
             unit="µs",
-            series=self._by_number(curves, 0),
+            series=self._by_number(curves, _REGULAR),
             published=Published(
                 source=f"Heintz (2009), figure {under_test.average}",
                 unit="µs",
@@ -163,7 +167,7 @@ class _Bench:
             x="formulas at once",
             y="average time for a state",
             unit="µs",
-            series=self._by_number(curves, 1),
+            series=self._by_number(curves, _WITH_JITTER),
             logarithmic=True,
         )
 
@@ -212,7 +216,22 @@ class _Bench:
         }
         within = (self._parts[part], self._parts[part + 1])
         found = measure(trials, self._sizes.repetitions, self._on_progress, within, "formulas")
-        return [series(name, {n: found[name, n] for n in self._sizes.n_states}) for name in curves]
+        if part == _WITH_JITTER:
+            self._shares = [self._share(name, n, found[name, n]) for name, n in trials]
+        return [
+            series(name, {n: found[name, n] for n in self._sizes.n_states}, fitted=True)
+            for name in curves
+        ]
+
+    def _share(self, name: str, n: int, found: Sequence[float]) -> Figure:
+        """Return the time for one of *n* formulas."""
+        under_test = self._under_test
+        return Figure(
+            name=f"{under_test.text}, {name}: one formula of {n}, one state",
+            unit="ns",
+            value=Measurement.of([each / n * _NANOSECONDS for each in found]),
+            published=f"{under_test.least:.0f} to {under_test.most:.0f} µs (Heintz 2009, 7.10)",
+        )
 
     def _trial(self, alternation: Alternation, jitter: float, n: int) -> Callable[[], float]:
         at = times(self._sizes.n_states[n], jitter)

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from dyknow.errors import FeatureError
+from dyknow.mtl.check import BOOLEAN, NUMBER, TEXT
 from dyknow.mtl.monitors import Monitor
 from dyknow.mtl.printer import text_from_formula
 from dyknow.mtl.syntax import TimeModel, Verdict
@@ -125,7 +126,7 @@ def _steps(
         try:
             verdict = step(now, values)
         except FeatureError as error:
-            raise _located(error, states, values) from None
+            raise _located(error, question, states, values) from None
         if verdict is not undecided:
             break
     return n_states, now
@@ -143,16 +144,25 @@ def _complete(
     yield from following
 
 
-def _located(error: FeatureError, states: StateReader, values: Mapping[str, Any]) -> StatesError:
-    """Return a fault of a value, with its place and as it stands in the state."""
-    expected = f"{error.expected} as '{error.feature}'"
-    value = values.get(error.feature)
-    kind = _KINDS.get(type(value))
-    found = error.found if kind is None else f"{described(value)}, {kind}"
-    return StatesError(states.place(error.feature), expected, found)
+def _located(
+    error: FeatureError, question: Question, states: StateReader, values: Mapping[str, Any]
+) -> StatesError:
+    """Return a fault of a value, with its place and as it stands in the state.
+
+    A feature of another sort than the formula needs is at fault, whatever it is compared with.
+    """
+    for term, sort in question.sorts.items():
+        found = _SORTS.get(type(values.get(term)))
+        if sort is not None and found is not None and sort != found:
+            expected = f"a {sort} as '{term}'"
+            return StatesError(
+                states.place(term), expected, f"{described(values[term])}, a {found}"
+            )
+    place = states.place(error.feature)
+    return StatesError(place, f"{error.expected} as '{error.feature}'", error.found)
 
 
-_KINDS = {bool: "a boolean", int: "a number", float: "a number", str: "a text"}
+_SORTS = {bool: BOOLEAN, int: NUMBER, float: NUMBER, str: TEXT}
 
 
 class _Explained:

@@ -98,11 +98,12 @@ def test_steps_tell_what_changes():
         ("p", '"p": 1', "f:2:26: expected a boolean as 'p', found 1, a number"),
         ("p > 1", '"p": "fast"', "f:2:26: expected a number as 'p', found 'fast', a text"),
         ("p > 1", '"p": true', "f:2:26: expected a number as 'p', found true, a boolean"),
+        ('p = "a"', '"p": 3', "f:2:26: expected a text as 'p', found 3, a number"),
         ("p > 1", '"q": 1', "f:2: expected a value in the state as 'p', found none"),
         (
             "1 / p > 1",
             '"p": 0',
-            "f:2:26: expected a divisor other than 0 as 'p', found 0, a number",
+            "f:2:26: expected a divisor other than 0 as 'p', found 0",
         ),
         (
             "p * p - p * p > 1",
@@ -114,7 +115,8 @@ def test_steps_tell_what_changes():
 )
 def test_values_that_the_formula_cannot_take_have_their_place(formula, values, message):
     """A fault that only the formula sees is told with file, line and column."""
-    first = '{"t": 0, "values": {"p": true}}' if formula == "p" else '{"t": 0, "values": {"p": 2}}'
+    fit = {"p": "true", 'p = "a"': '"b"'}.get(formula, "2")
+    first = '{"t": 0, "values": {"p": ' + fit + "}}"
     text = first + '\n{"t": 1, "values": {' + values + "}}"
 
     with pytest.raises(StatesError) as raised:
