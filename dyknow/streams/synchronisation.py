@@ -32,9 +32,9 @@ from dyknow.streams.state_waiting import Waiting
 from dyknow.streams.values import are_equal
 from dyknow.time import Duration, TimePoint
 
-__all__ = ["COMMON_TIMES", "Synchronisation"]
+__all__ = ["Synchronisation"]
 
-COMMON_TIMES = StatePolicy()
+_COMMON_TIMES = StatePolicy()
 """A state for each valid time that all inputs have, once it is certain that they have it."""
 
 
@@ -64,7 +64,7 @@ class Synchronisation:
     def __init__(
         self,
         names: Sequence[str],
-        policy: StatePolicy = COMMON_TIMES,
+        policy: StatePolicy = _COMMON_TIMES,
         inputs: Sequence[Policy] = (),
     ) -> None:
         """Join as many inputs as there are *names*.
