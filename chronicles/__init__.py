@@ -1,8 +1,11 @@
 """Complex events recognised from simple ones.
 
-Read in this order: `syntax` (what a chronicle says), `parser` and `printer` (text to chronicle
-and back), `constraints` (simple temporal networks), `check` (every fault of a file), `events`
-(what goes in and comes out), `patterns` and `models` (chronicles prepared for recognition),
+Read in this order: `syntax` (what a chronicle says), `recovery`, `parser` and `printer` (text to
+chronicle and back), `constraints` (simple temporal networks), `conditions` (on values),
+`expansion` (what is named or included, put in), `timing` (when instants can be), `check` (every
+fault of a file), `events` (what goes in and comes out), `semantics` (what chronicles mean),
+`patterns` and `models` (chronicles prepared for recognition), `boundedness` (what may be awaited
+without end),
 `instances` (partial instances and how they are found), `counting`, `matching` (which instances
 begin, go on, complete, or die), `joining` (how an event joins them), `reporting` (which matches
 are reported), `prospects` (partial instances as people see them), `recognition` (the

@@ -73,8 +73,8 @@ def _reached(
         slot = waiting.pop()
         for other in slots:
             is_near = bool(slot.neighbours & 1 << other.index)
-            if is_near and other.index not in filled:
-                if limits[slot.index][other.index] < UNBOUNDED:
-                    filled[other.index] = None
-                    waiting.append(other)
+            is_limited = limits[slot.index][other.index] < UNBOUNDED
+            if is_near and is_limited and other.index not in filled:
+                filled[other.index] = None
+                waiting.append(other)
     return filled

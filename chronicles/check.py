@@ -50,14 +50,16 @@ from chronicles.syntax import (
     ReportAll,
     ReportNonOverlapping,
     Star,
+    Statement,
     TemporalConstraint,
     Value,
     Variable,
     VariableDeclaration,
+    names_in,
     stars_of,
     variables_of,
 )
-from chronicles.timing import timing_of
+from chronicles.timing import Timing, timing_of
 from dyknow.errors import (
     ArityError,
     CircularDefinitionError,
@@ -90,7 +92,7 @@ def faults(file: ChronicleFile) -> list[SpecificationError]:
         *_faults_of_names("constraint", file.constraints),
         *_faults_of_names("attribute or message", file.signals),
         *_faults_of_names("chronicle", file.chronicles),
-        *_faults_of_domains(file.domains, declared),
+        *_faults_of_domains(file.domains),
         *_circles(file),
     ]
     for constraint in file.constraints:
@@ -139,10 +141,10 @@ class _Declared:
     def listed(self, signal: Signal, parameter: str) -> Iterator[str]:
         """Yield the values that are written down for *parameter* in *signal*."""
         for condition in getattr(signal, "conditions", ()):
-            is_membership = isinstance(condition, Membership)
+            names = [variable.name for variable in variables_in(condition)]
+            is_membership = isinstance(condition, Membership) and names == [parameter]
             if is_membership and self.knows_domains_of(condition):
-                if condition.variable.name == parameter:
-                    yield from sorted(members_of(condition.domain, self.domains).values)
+                yield from sorted(members_of(condition.domain, self.domains).values)
 
     def knows_domains_of(self, condition: Condition) -> bool:
         """Return whether every domain in *condition* is known."""
@@ -163,9 +165,7 @@ def _whole_domains(declarations: Sequence[DomainDeclaration]) -> dict[str, Domai
             whole[name] = waiting.pop(name)
 
 
-def _faults_of_domains(
-    declarations: Sequence[DomainDeclaration], declared: _Declared
-) -> Iterator[SpecificationError]:
+def _faults_of_domains(declarations: Sequence[DomainDeclaration]) -> Iterator[SpecificationError]:
     names = [declaration.name for declaration in declarations]
     for declaration in declarations:
         for reference in references_of(declaration.domain):
@@ -373,26 +373,33 @@ def _faults_of_statements(
     chronicle: Chronicle, declared: _Declared
 ) -> Iterator[SpecificationError]:
     for statement in chronicle.statements:
-        event_type = _event_type(statement)
-        if event_type is not None:
-            yield from _faults_of_event_type(event_type, declared)
-        match statement:
-            case Occurs(_, least, most, _, _, _) if most is not None and least > most:
-                message = f"expected at least {least} as the largest number, found {most}"
-                yield ChronicleError(message, statement.span)
-            case Inclusion() | NamedConstraint():
-                yield from _faults_of_use(statement, declared)
-            case VariableDeclaration(_, _, domain) if domain is not None:
-                yield from _faults_of_domain(domain, declared)
-            case _ if isinstance(statement, TemporalConstraint):
-                yield from _faults_of_comparison(statement)
-            case _ if isinstance(statement, Condition):
-                yield from _faults_of_domains_in(statement, declared)
-            case _:
-                pass
+        yield from _faults_of_statement(statement, declared)
     reports = [s for s in chronicle.statements if isinstance(s, ReportAll | ReportNonOverlapping)]
     for report in reports[1:]:
         yield ChronicleError("expected at most one 'report' statement", report.span)
+
+
+def _faults_of_statement(
+    statement: Statement, declared: _Declared
+) -> Iterator[SpecificationError]:
+    if isinstance(statement, TemporalConstraint):
+        yield from _faults_of_comparison(statement)
+    if isinstance(statement, Condition):
+        yield from _faults_of_domains_in(statement, declared)
+    match statement:
+        case EventAt(_, event_type, _, _) | NoEvent(_, event_type, _, _):
+            yield from _faults_of_event_type(event_type, declared)
+        case Occurs(_, least, most, event_type, _, _):
+            yield from _faults_of_event_type(event_type, declared)
+            if most is not None and least > most:
+                message = f"expected at least {least} as the largest number, found {most}"
+                yield ChronicleError(message, statement.span)
+        case Inclusion() | NamedConstraint():
+            yield from _faults_of_use(statement, declared)
+        case VariableDeclaration(_, _, domain) if domain is not None:
+            yield from _faults_of_domain(domain, declared)
+        case _:
+            pass
 
 
 def _faults_of_variables(
@@ -431,7 +438,7 @@ def _variables_used_by(statement: object) -> Iterator[Variable | Star]:
 def _faults_of_stars(expansion: Expansion) -> Iterator[SpecificationError]:
     """Yield the conditions on star variables that no event type can be tested for."""
     types = [t for t in map(_event_type, expansion.statements) if t is not None]
-    groups = [{v.name for v in (*variables_of(t), *stars_of(t))} for t in types]
+    groups = [names_in(t) for t in types]
     starred = {star.name for t in types for star in stars_of(t)}
     for name, span in expansion.stars.items():
         if name not in starred and "." not in name:
@@ -493,25 +500,27 @@ def _faults_of_value(
 
 def _faults_of_time(chronicle: Chronicle, expansion: Expansion) -> Iterator[SpecificationError]:
     timing = timing_of(expansion)
+    known = set(timing.places)
     contradictory = timing.network.contradiction()
     if contradictory:
         yield _contradiction(chronicle, contradictory)
-        known = {name for name in timing.network.instants if expansion_knows(expansion, name)}
-    else:
-        known = set(timing.places)
+        known = {name for name in known if _is_time_of_event(expansion, name)}
     near = [name for name in known if "." not in name and " " not in name]
-    for name, span in expansion.declared.items():
-        if name not in known:
-            yield UnboundInstantError(name, span, nearest_name(name, near))
+    used = list(expansion.declared.items())
     for statement in expansion.statements:
-        for name in dict.fromkeys(instants_of(statement)):
-            if name not in known and "." not in name:
-                yield UnboundInstantError(name, statement.span, nearest_name(name, near))
-        if isinstance(statement, ReportNonOverlapping):
-            names = [n for n in (statement.begin, statement.end) if n in timing.places]
-            for name in names:
-                if timing.places[name].offset:
-                    yield UnboundInstantError(name, statement.span)
+        used += [(name, statement.span) for name in dict.fromkeys(instants_of(statement))]
+    for name, span in used:
+        if name not in known and "." not in name:
+            yield UnboundInstantError(name, span, nearest_name(name, near))
+    yield from _faults_of_reports(expansion, timing)
+
+
+def _faults_of_reports(expansion: Expansion, timing: Timing) -> Iterator[SpecificationError]:
+    for report in expansion.statements:
+        if isinstance(report, ReportNonOverlapping):
+            for name in dict.fromkeys((report.begin, report.end)):
+                if name in timing.places and timing.places[name].offset:
+                    yield UnboundInstantError(name, report.span)
 
 
 def _contradiction(
@@ -525,7 +534,7 @@ def _contradiction(
     return InconsistentConstraintsError(chronicle.name, texts, span)
 
 
-def expansion_knows(expansion: Expansion, name: str) -> bool:
+def _is_time_of_event(expansion: Expansion, name: str) -> bool:
     """Return whether *name* is the time of an event, the beginning, or the end."""
     return name in expansion.extremes or any(e.instant == name for e in expansion.events)
 

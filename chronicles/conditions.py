@@ -155,18 +155,26 @@ def holds(condition: Condition, values: Mapping[str, str], domains: Mapping[str,
             return (value(variable) == value(other)) == (sign == "==")
         case Negation(_, body):
             return not of(body)
-        case Conjunction(_, left, right):
-            return of(left) and of(right)
-        case Disjunction(_, left, right):
-            return of(left) or of(right)
-        case Implication(_, left, right):
-            return not of(left) or of(right)
-        case Equivalence(_, left, right):
-            return of(left) == of(right)
         case Conditional(_, first, second, third):
             return of(second) if of(first) else third is None or of(third)
         case _:
-            assert_never(condition)
+            return _connected(condition, of(condition.left), of(condition.right))
+
+
+def _connected(
+    condition: Conjunction | Disjunction | Implication | Equivalence,
+    left: bool,  # noqa: FBT001  # a truth value is what it is about
+    right: bool,  # noqa: FBT001
+) -> bool:
+    match condition:
+        case Conjunction():
+            return left and right
+        case Disjunction():
+            return left or right
+        case Implication():
+            return not left or right
+        case Equivalence():
+            return left == right
 
 
 _Row = Sequence[str | None]
@@ -249,7 +257,9 @@ def contradictory_conditions(
     return tuple(needed)
 
 
-def _satisfiable(conditions: Sequence[Condition], domains: Mapping[str, Domain]) -> bool:
+def _satisfiable(  # noqa: C901  # one search
+    conditions: Sequence[Condition], domains: Mapping[str, Domain]
+) -> bool:
     names = list(dict.fromkeys(v.name for c in conditions for v in variables_in(c)))
     constants = dict.fromkeys(_constants(conditions, domains))
     waiting: list[list[Condition]] = [[] for _ in names]

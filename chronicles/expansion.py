@@ -105,7 +105,7 @@ def expand(chronicle: Chronicle, file: ChronicleFile) -> Expansion:
     return _Expander(file).expand(chronicle)
 
 
-def instants_of(statement: Any) -> Iterator[str]:
+def instants_of(statement: Any) -> Iterator[str]:  # noqa: C901, PLR0912  # one case each
     """Yield the names of the instants in a statement, as often as they stand in it."""
     match statement:
         case Instant(_, name, _) | Displaced(_, name, _) | EventAt(_, _, name, _):
@@ -277,7 +277,7 @@ def _fits_chronicle(use: Inclusion, chronicle: Chronicle) -> bool:
     )
 
 
-def _renamed(node: Any, words: _Words) -> Any:
+def _renamed(node: Any, words: _Words) -> Any:  # noqa: C901, PLR0911, PLR0912  # one case each
     """Return *node* with every variable and instant replaced by what it stands for."""
     match node:
         case Variable() | Star():

@@ -20,8 +20,7 @@ from chronicles.syntax import (
     Occurs,
     ReportNonOverlapping,
     Star,
-    stars_of,
-    variables_of,
+    names_in,
 )
 from chronicles.timing import Place, timing_of
 
@@ -248,7 +247,7 @@ class _Maker:
 
     def _pattern(self, event_type: EventType) -> Pattern:
         """Return the pattern of *event_type*, which also tests its star variables."""
-        known = {v.name for v in (*variables_of(event_type), *stars_of(event_type))}
+        known = names_in(event_type)
         filters = []
         for statement in self._statements:
             if isinstance(statement, Condition) and _has_star(statement):

@@ -20,7 +20,7 @@ leave open:
 import logging
 from collections.abc import Callable, Iterable, Sequence
 
-from chronicles.constraints import INSTANT
+from chronicles.constraints import floor_to_instant
 from chronicles.events import Event, Recognition, event_from_recognition
 from chronicles.instances import Agenda, Instance
 from chronicles.matching import Handler, Matcher
@@ -147,7 +147,7 @@ class Recogniser:
         Further events of the same instant may follow in another call. Late events are left out
         and counted in `n_late`.
         """
-        now = time - time % INSTANT
+        now = floor_to_instant(time)
         recognised: list[Recognition] = []
         if now != self._clock:
             if self._clock is not None and now < self._clock:
@@ -228,7 +228,8 @@ class Recogniser:
             self._seen.clear()
             for _, instance in self._agenda.until(due):
                 instance.stage.review(instance, due)
-            self._take_found(due, recognised)
+            if self._found:
+                self._take_found(due, recognised)
             due = self._agenda.due()
 
     def _note(self, matcher: Matcher, instance: Instance, recognised_at: int) -> None:

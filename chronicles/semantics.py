@@ -31,12 +31,15 @@ from chronicles.syntax import (
     Value,
     Variable,
     Within,
+    names_in,
 )
 
 __all__ = ["Match", "matches"]
 
 _MARGIN = 12
 """How many instants around the events are tried for instants that are no times of events."""
+
+_EVER = -(1 << 62)
 
 Times = Mapping[str, int]
 Values = Mapping[str, str]
@@ -87,7 +90,7 @@ class _Meaning:
                 settled = [self._settled_at(s, times, values) for s in self._statements]
                 if None in settled or not self._all_hold(times, values):
                     continue
-                moments = [moment for moment in settled if moment is not None]
+                moments = [int(moment) for moment in settled if moment is not None]
                 recognised_at = max([*moments, *at_events.values()])
                 if recognised_at <= clock:
                     instants = tuple(sorted(at_events.items()))
@@ -136,7 +139,7 @@ class _Meaning:
     def _stars_hold(
         self, stars: Mapping[str, list[str]], event_type: EventType, values: Values
     ) -> bool:
-        own = {p.name for p in _parameters(event_type) if isinstance(p, Variable | Star)}
+        own = names_in(event_type)
         for condition in self._star_conditions:
             if {variable.name for variable in variables_in(condition)} <= own:
                 for chosen in product(*stars.values()):
@@ -166,10 +169,7 @@ class _Meaning:
                         return False
                 case Within(_, difference, interval):
                     low, high = _amount(difference, times)
-                    assert low is not None
-                    assert low == high
-                    lower, upper = interval.lower, interval.upper
-                    if (lower is not None and low < lower) or (upper is not None and low > upper):
+                    if not (_at_most(interval.lower, low) and _at_most(high, interval.upper)):
                         return False
                 case _ if isinstance(statement, Condition) and not _stars_in(statement):
                     if not holds(statement, values, self._domains):
@@ -178,15 +178,16 @@ class _Meaning:
                     pass
         return True
 
-    def _settled_at(self, statement: object, times: Times, values: Values) -> float | None:
+    def _settled_at(self, statement: object, times: Times, values: Values) -> int | None:
         """Return from when on a counter holds for good; None if it never does."""
+        most: int | None
         match statement:
             case NoEvent(_, event_type, begin, end):
                 least, most = 0, 0
             case Occurs(_, least, most, event_type, begin, end):
                 pass
             case _:
-                return float("-inf")
+                return _EVER
         first, last = times[begin.name] + begin.offset, times[end.name] + end.offset
         counted = sorted(
             event.time
@@ -196,15 +197,10 @@ class _Meaning:
         if len(counted) < least or (most is not None and len(counted) > most):
             return None
         if first >= last:
-            return float("-inf")
+            return _EVER
         if most is not None:
             return last
-        return counted[least - 1] if least else float("-inf")
-
-
-def _parameters(event_type: EventType) -> tuple[object, ...]:
-    change = event_type.change
-    return (*event_type.arguments, *((change.before, change.after) if change else ()))
+        return counted[least - 1] if least else _EVER
 
 
 def _stars_in(condition: Condition) -> bool:
@@ -241,8 +237,8 @@ def _in_order(
     if order in (">", ">="):
         left, right = right, left
     forward = _at_most(left[0], right[1], strictly=order in ("<", ">"))
-    return forward and (order != "=" or _at_most(right[0], left[1], strictly=False))
+    return forward and (order != "=" or _at_most(right[0], left[1]))
 
 
-def _at_most(low: int | None, high: int | None, *, strictly: bool) -> bool:
+def _at_most(low: int | None, high: int | None, *, strictly: bool = False) -> bool:
     return low is None or high is None or (low < high if strictly else low <= high)

@@ -65,6 +65,7 @@ __all__ = [
     "Variable",
     "VariableDeclaration",
     "Within",
+    "names_in",
     "stars_of",
     "variables_of",
 ]
@@ -535,6 +536,12 @@ def variables_of(event_type: EventType) -> Iterator[Variable]:
     for parameter in (*event_type.arguments, *values):
         if isinstance(parameter, Variable):
             yield parameter
+
+
+def names_in(event_type: EventType) -> set[str]:
+    """Return the names of all variables of *event_type*."""
+    variables = {variable.name for variable in variables_of(event_type)}
+    return variables | {star.name for star in stars_of(event_type)}
 
 
 def stars_of(event_type: EventType) -> Iterator[Star]:

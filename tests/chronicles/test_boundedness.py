@@ -18,7 +18,8 @@ from chronicles.parser import parse_chronicles
 )
 def test_events_without_a_limit_are_told(constraints: str, awaited: list[str]) -> None:
     """An event is told if nothing limits how long after those before it it can come."""
-    text = f"chronicle c[?x] {{ event(a[?x], t1) event(b[?x], t2) event(d[?x], t3) {constraints} }}"
+    events = "event(a[?x], t1) event(b[?x], t2) event(d[?x], t3)"
+    text = f"chronicle c[?x] {{ {events} {constraints} }}"
 
     found = warnings(parse_chronicles(text))
 

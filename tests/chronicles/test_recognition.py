@@ -53,7 +53,7 @@ def event_types(draw: st.DrawFn, variables: list[str]) -> str:
 
 
 @st.composite
-def chronicle_texts(draw: st.DrawFn) -> str:
+def chronicle_texts(draw: st.DrawFn) -> str:  # noqa: C901, PLR0912, PLR0915  # one choice each
     """Return the text of a small chronicle all of whose variables are parameters."""
     n_slots = draw(st.integers(1, 4))
     types = [draw(event_types(VARIABLES)) for _ in range(n_slots)]
