@@ -32,6 +32,7 @@ _STYLE: Final[dict[str, Any]] = {
 _ENDINGS = (".png", ".svg")
 _DOTS_PER_INCH = 160
 _FEW = 40
+_HIGH = 1e5
 
 
 def write_pictures(result: BenchmarkResult, folder: Path) -> list[Path]:
@@ -104,7 +105,7 @@ def _dress(panel: Axes, experiment: Experiment) -> None:
     panel.set_xlabel(experiment.x)
     if experiment.logarithmic:
         panel.set_xscale("log")
-        panel.xaxis.set_major_formatter(FuncFormatter(lambda x, _: f"{x:,.0f}"))
+        panel.xaxis.set_major_formatter(FuncFormatter(lambda x, _: _power(x)))
         if any(series.line is not None for series in experiment.series):
             panel.set_yscale("log")
             return
@@ -112,6 +113,11 @@ def _dress(panel: Axes, experiment: Experiment) -> None:
         panel.set_xlim(left=0)
         panel.xaxis.set_major_locator(MaxNLocator(integer=True))
     panel.set_ylim(bottom=0, top=_room_above(panel))
+
+
+def _power(x: float) -> str:
+    """Write a power of ten, the high ones with their exponents for want of room."""
+    return f"{x:,.0f}" if x < _HIGH else f"$10^{{{np.log10(x):.0f}}}$"
 
 
 def _room_above(panel: Axes) -> float:

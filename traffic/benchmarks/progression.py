@@ -23,6 +23,7 @@ from traffic.benchmarks.measuring import (
     Benchmark,
     OnProgress,
     Plan,
+    line_through,
     measure,
     series,
     undisturbed,
@@ -163,7 +164,7 @@ class _Bench:
         curves = {f"± {jitter:.0%}": (under_test.worst, jitter) for jitter in JITTERS}
         return Experiment(
             name=f"{under_test.name}-jitter",
-            what=f"{under_test.text}, {under_test.worst}, about every 100 ms",
+            what=f"{under_test.text},\n{under_test.worst}, about every 100 ms",
             x="formulas at once",
             y="average time for a state",
             unit="µs",
@@ -219,7 +220,7 @@ class _Bench:
         if part == _WITH_JITTER:
             self._shares = [self._share(name, n, found[name, n]) for name, n in trials]
         return [
-            series(name, {n: found[name, n] for n in self._sizes.n_states}, fitted=True)
+            _fitted(series(name, {n: found[name, n] for n in self._sizes.n_states}))
             for name in curves
         ]
 
@@ -263,6 +264,11 @@ class _Bench:
                 columns.step(now, given)
                 found.append((time.process_time() - began) * _MICROSECONDS)
         return found
+
+
+def _fitted(curve: Series) -> Series:
+    """Return a curve with a line through all points but the first, which is measured otherwise."""
+    return curve.model_copy(update={"line": line_through(curve.points[1:])})
 
 
 def _time_of_one(
