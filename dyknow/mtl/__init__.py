@@ -1,10 +1,9 @@
 """Metric temporal logic over streams of states: the language, its meaning, and progression.
 
 Read in this order: `syntax`, `grammar.lark`, `parser`, `printer`, `check`, `quantifiers`,
-`declarations`,
-`symbols`, `semantics`, `truth`, `columns`, `instants`, `nodes`, `entailment`, `graph`,
-`residuals`, `moments`, `decisions`, `rules`, `wording`, `progression`, `products`, `monitors`,
-`groups`, `operators`, `execution`.
+`declarations`, `symbols`, `semantics`, `truth`, `columns`, `instants`, `nodes`, `entailment`,
+`graph`, `knowledge`, `domination`, `residuals`, `moments`, `decisions`, `rules`, `wording`,
+`progression`, `products`, `monitors`, `groups`, `operators`, `execution`.
 """
 
 from dyknow.mtl.columns import evaluate_atoms

@@ -85,7 +85,7 @@ class ProgressionTable:
     true. A table may be shared; when it has more than *limit* residuals, `collect_when_full`
     forgets those that no registered holder has, and renumbers the others. Memory is bounded by
     *limit* residuals (half a kilobyte each), or twice those in use if that is more, by *limit*
-    rules (some kilobytes each), and by 16 MB of tables (or that of one elapsed time, if it is
+    rules (about 2 kB each), and by 16 MB of tables (or that of one elapsed time, if it is
     more); `memory` says how much of that is used.
 
     Attributes:

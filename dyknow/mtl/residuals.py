@@ -17,9 +17,11 @@ and moved by durations of the formula, so that what is done here can be watched 
 for other times (`dyknow.mtl.rules`).
 """
 
+from collections import Counter
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 
+from dyknow.mtl.domination import redundant
 from dyknow.mtl.graph import FormulaGraph
 from dyknow.mtl.instants import (
     EMPTY,
@@ -33,43 +35,18 @@ from dyknow.mtl.instants import (
     complement,
     either,
     first_from,
-    pieces,
     run_end,
-    shift,
     until,
     without,
 )
-from dyknow.mtl.nodes import TRUTH, All, GraphNode, Literal, UntilNode
+from dyknow.mtl.knowledge import NOTHING, Knowledge
+from dyknow.mtl.nodes import TRUTH, All, GraphNode, Literal, Proposition, UntilNode
 from dyknow.mtl.syntax import TimeModel, Verdict
 
-__all__ = ["Knowledge", "Obligation", "Progression", "Residual"]
+__all__ = ["Obligation", "Progression", "Residual"]
 
 _NOW: Instants = (0, 1)
-
-
-@dataclass(frozen=True, slots=True)
-class Knowledge:
-    """The past instants at which a node is known to be true, and known to be false."""
-
-    true: Instants = EMPTY
-    false: Instants = EMPTY
-
-    def of(self, literal: Literal) -> "Knowledge":
-        """Return the same for a literal of the node."""
-        return Knowledge(self.false, self.true) if literal & 1 else self
-
-    def joined(self, true: Instants, false: Instants) -> "Knowledge":
-        """Return what is known here or there."""
-        return Knowledge(either(self.true, true), either(self.false, false))
-
-    def within(self, instants: Instants) -> "Knowledge":
-        """Forget all other instants."""
-        if not instants:
-            return _NOTHING
-        return Knowledge(both(self.true, instants), both(self.false, instants))
-
-
-_NOTHING = Knowledge()
+_PAST: Instants = (PAST, 1)
 
 
 @dataclass(frozen=True, slots=True)
@@ -135,6 +112,7 @@ class Progression:
         self.owed = tuple(dict.fromkeys(self._top_level(graph.root)))
         self.longest = sum(2 + _finite_bounds(node) for node in graph.nodes)
         self._place = {literal: at for at, literal in enumerate(self.owed)}
+        self._users = _count_users(graph)
         between_states = graph.plain_values(0, sampled=False)
         self._between = between_states if graph.time_model is TimeModel.POINTS else None
 
@@ -152,7 +130,7 @@ class Progression:
         """Return what is left after the first state, the atoms of which have the truth *bits*."""
         held = self._graph.plain_values(bits)
         obligations = tuple(self._first_obligation(literal >> 1, held) for literal in self.owed)
-        nothing = (_NOTHING,) * len(self._nodes)
+        nothing = (NOTHING,) * len(self._nodes)
         return self._looked_at(Residual(obligations, nothing, tuple(held)), held, EMPTY)
 
     def _first_obligation(self, number: int, held: list[bool]) -> _ObligationState:
@@ -259,33 +237,22 @@ class Progression:
     def _without_redundant(
         self, number: int, obligation: _ObligationState, known: list[Knowledge]
     ) -> _ObligationState:
-        """Drop past witnesses that cannot be better than others that stay.
-
-        Where the right side comes down to `not eventually [a, b] f`, an instant is no better
-        than the one before it, if f is known to be false *a* after that: whatever may come to
-        be wrong with the earlier instant is wrong with the later one too. Where it comes down
-        to `eventually [a, b] f`, the earlier of the two is no better.
-        """
+        """Drop past witnesses that cannot be better than others that stay."""
         node = self._graph.nodes[number]
         if not isinstance(obligation, Obligation) or not isinstance(node, UntilNode):
             return obligation
-        if node.left != TRUTH or obligation.witnesses[0] >= 1:
+        past = both(obligation.witnesses, _PAST)
+        if not past:
             return obligation
-        redundant, last_by_part = EMPTY, dict[Literal, int]()
-        for start, end in pieces(both(obligation.witnesses, between(PAST, 1))):
-            part = self.undecided_part(node.right, (start, end), known)
-            inner = self._graph.nodes[part >> 1]
-            if isinstance(inner, UntilNode) and inner.left == TRUTH:
-                barren = shift(known[inner.right >> 1].of(inner.right).false, -inner.least)
-                if part & 1:
-                    linked = run_end(barren, last_by_part.get(part, start)) >= start
-                    first = start if part in last_by_part and linked else start + 1
-                    poor = both(shift(barren, 1), between(first, end))
-                else:
-                    poor = both(barren, between(start, end - 1))
-                redundant = either(redundant, poor)
-                last_by_part[part] = end - 1
-        return Obligation(without(obligation.witnesses, redundant), obligation.left_from)
+        needless = self._redundant(node, past, known)
+        return Obligation(without(obligation.witnesses, needless), obligation.left_from)
+
+    def _redundant(
+        self, node: UntilNode, waiting: Instants, known: Sequence[Knowledge]
+    ) -> Instants:
+        """Return which witnesses of *node* among those *waiting* are not needed."""
+        has_left = node.left != TRUTH
+        return redundant(self._graph.nodes, node.right, waiting, known, keep_earlier=has_left)
 
     def undecided_part(
         self, literal: Literal, instants: Instants, known: Sequence[Knowledge]
@@ -314,10 +281,31 @@ class Progression:
         for number, node in reversed(self._nodes):
             known[number] = known[number].within(asked[number])
             if asked[number] and self._graph.temporal[number]:
-                self._ask_parts(asked, node, _open(known[number], asked[number]))
+                pending = _open(known[number], asked[number])
+                self._give_up(number, pending, known)
+                self._ask_parts(asked, node, pending)
         after = self._between or held
         still = [bool(value and a and a[-1] > 1) for value, a in zip(after, asked, strict=True)]
         return Residual(obligations, tuple(known), tuple(still))
+
+    def _give_up(self, number: int, pending: Instants, known: list[Knowledge]) -> None:
+        """Take the right side of an operator to be false at witnesses that are not needed.
+
+        These are redundant past witnesses of all past instants at which the operator is pending.
+        Nobody else may ask for the right side.
+        """
+        node = self._graph.nodes[number]
+        past = both(pending, _PAST)
+        if not past or not isinstance(node, UntilNode) or self._users[node.right >> 1] != 1:
+            return
+        first = past[-1] - 1 + node.least
+        end = FUTURE if node.most == FUTURE else past[0] + node.most + 1
+        right = known[node.right >> 1].of(node.right)
+        shared = both(between(first, end), _PAST)
+        needless = self._redundant(node, _open(right, shared), known)
+        if needless:
+            right = right.joined(EMPTY, needless)
+            known[node.right >> 1] = right.of(node.right)
 
     def _ask_parts(self, asked: list[Instants], node: GraphNode, pending: Instants) -> None:
         match node:
@@ -330,6 +318,20 @@ class Progression:
                     _ask(asked, left, after(pending, 0, _previous(most)))
             case _:
                 pass
+
+
+def _count_users(graph: FormulaGraph) -> Counter[int]:
+    """Return for each node how many nodes are made of it; the whole formula has one user more."""
+    users = Counter([graph.root >> 1])
+    for node in graph.nodes:
+        match node:
+            case All(literals):
+                users.update(literal >> 1 for literal in literals)
+            case UntilNode(_, _, left, right):
+                users.update((left >> 1, right >> 1))
+            case Proposition():
+                pass
+    return users
 
 
 def _finite_bounds(node: GraphNode) -> int:

@@ -35,8 +35,8 @@ Trace = Sequence[tuple[TimePoint, Mapping[str, Any]]]
 def evaluate(formula: Formula, trace: Trace, time_model: TimeModel = TimeModel.HOLD) -> Verdict:
     """Return the verdict on *formula*, which has no quantifiers, after all states of *trace*.
 
-    Takes a time proportional to the number of time-points (in the model `hold`, of nanoseconds)
-    to the power of the nesting of operators.
+    Takes a time proportional to the number of operators and the square of the number of
+    time-points: of nanoseconds, in the model `hold`.
     """
     if not trace:
         return Verdict.UNDECIDED
@@ -63,13 +63,22 @@ class _Meaning:
         self._time_model = time_model
         self._known = trace
         self._columns: dict[Atom, AtomColumns] = {}
+        self._found: dict[tuple[int, int], Verdict] = {}
 
     def after(self, count: int, formula: Formula) -> Verdict:
         """Return the verdict on *formula* when the first *count* states are known."""
         self._known = self._trace[:count]
+        self._found.clear()
         return self.at(formula, self._trace[0][0])
 
-    def at(self, formula: Formula, now: int) -> Verdict:  # noqa: C901, PLR0911, PLR0912
+    def at(self, formula: Formula, now: int) -> Verdict:
+        """Return the verdict on *formula* at a time-point of the trace, found out only once."""
+        place = (id(formula), now)
+        if place not in self._found:
+            self._found[place] = self._verdict(formula, now)
+        return self._found[place]
+
+    def _verdict(self, formula: Formula, now: int) -> Verdict:  # noqa: C901, PLR0911, PLR0912
         """Return the verdict on *formula* at a time-point of the trace."""
         match formula:
             case syntax.Truth(value):
