@@ -118,19 +118,26 @@ class Monitor:
             FeatureError: A feature is missing, of the wrong kind, or NaN; nothing has changed.
             StateOrderError: The state is not later than the one before; nothing has changed.
         """
-        bits = 0 if self._shape.verdict else self.table.columns.of_state(state)
-        return self.step_bits(now, bits)
+        shape, past = self._shape, self._past
+        if now <= past[0]:
+            raise StateOrderError(now, TimePoint(past[0]))
+        bits = 0 if shape.verdict else self.table.columns.of_state(state)
+        following = shape[bits](now, past) or self._learn(bits, now)
+        self._shape, self._past = following
+        return following[0].verdict
 
     def step_bits(self, now: TimePoint, bits: int) -> Verdict:
         """Take in a state as `step` does; bit i of *bits* is the truth of `table.atoms[i]`."""
+        # The same as above, without a call between the two: this is where monitors spend time.
         past = self._past
         if now <= past[0]:
             raise StateOrderError(now, TimePoint(past[0]))
-        following = self._shape[bits](now, past)
-        if following is None:
-            following = self.table.rules.learn(self._shape, past, bits, now)
+        following = self._shape[bits](now, past) or self._learn(bits, now)
         self._shape, self._past = following
-        return self._shape.verdict
+        return following[0].verdict
+
+    def _learn(self, bits: int, now: TimePoint) -> tuple[Shape, Times]:
+        return self.table.rules.learn(self._shape, self._past, bits, now)
 
     @property
     def verdict(self) -> Verdict:
