@@ -1,12 +1,25 @@
 """Formula groups."""
 
 import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
 
-from dyknow.errors import FeatureError, StateOrderError
+from dyknow.errors import (
+    FeatureError,
+    FormulaSyntaxError,
+    SpecificationErrors,
+    StateOrderError,
+    UnknownNameError,
+)
+from dyknow.mtl.check import NUMBER, FeatureSignature, Vocabulary
 from dyknow.mtl.groups import FormulaGroup
+from dyknow.mtl.monitors import Monitor
 from dyknow.mtl.printer import text_from_formula
-from dyknow.mtl.syntax import Verdict
+from dyknow.mtl.syntax import TimeModel, Verdict
 from dyknow.time import milliseconds
+from tests.dyknow.mtl.formulas import small_formulas, traces
+
+MODELS = st.sampled_from(TimeModel)
 
 
 def ms(amount):
@@ -78,3 +91,53 @@ def test_names_are_unique_and_known():
         group.add("calm", "q")
     with pytest.raises(ValueError, match=r"no formula called 'clam'; did you mean 'calm'\?"):
         group.remove("clam")
+
+
+@settings(derandomize=True, deadline=None, max_examples=60)
+@given(st.lists(small_formulas(), min_size=1, max_size=4), traces(), st.integers(0, 3), MODELS)
+def test_a_group_gives_what_its_formulas_give_alone(formulas, trace, late, time_model):
+    """Whenever a formula is added, its verdicts are those of a monitor from then on."""
+    group = FormulaGroup(time_model=time_model)
+    alone, expected = {}, {}
+    for step, (time, state) in enumerate(trace):
+        for number, formula in enumerate(formulas):
+            if step == (late if number % 2 else 0):
+                group.add(str(number), formula)
+                alone[str(number)] = Monitor(formula, time_model)
+        changed = group.step(time, state)
+        before, expected = expected, {n: m.step(time, state) for n, m in alone.items()}
+        assert group.verdicts == expected
+        assert changed == {n: v for n, v in expected.items() if v and not before.get(n)}
+
+
+def test_faults_are_reported_when_a_formula_is_added():
+    """Unknown names, unknown domains and reversed intervals, with a vocabulary or without."""
+    known = Vocabulary({"speed": FeatureSignature(("Car",), NUMBER)}, {}, {"Car": "Car"})
+    group = FormulaGroup({"Car": ()}, known)
+
+    with pytest.raises(SpecificationErrors) as caught:
+        group.add("limit", "always [5, 1] forall c in Cra (sped(c) < 3)")
+    assert [fault.message for fault in caught.value.exceptions] == [
+        "expected an interval that ends after it begins, found [5, 1]",
+        "no domain called 'Cra'; did you mean 'Car'?",
+        "no feature called 'sped'; did you mean 'speed'?",
+    ]
+    with pytest.raises(UnknownNameError, match="no domain called 'Car'"):
+        FormulaGroup().add("limit", "forall c in Car (speed(c) < 3)")
+    with pytest.raises(FormulaSyntaxError) as syntax:
+        group.add("limit", "always (")
+    assert syntax.value.span.place == "limit:1:9"
+    assert len(group) == 0
+
+
+def test_an_empty_domain_decides_at_the_first_state():
+    """`forall` is true and `exists` false, and no features are needed."""
+    group = FormulaGroup({"Car": ()})
+    group.add("all", "forall c in Car always p(c)")
+    group.add("some", "exists c in Car always p(c)")
+
+    assert group.symbols().features == ()
+    assert group.step(ms(0), {}) == {"all": Verdict.TRUE, "some": Verdict.FALSE}
+    assert group.symbols().sorts == ("Car",)
+    assert text_from_formula(group.formula("all")) == "forall c in Car (always p(c))"
+    assert text_from_formula(group.residual("some")) == "false"

@@ -6,11 +6,15 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from dyknow.errors import FormulaSyntaxError
+from dyknow.errors import FormulaSyntaxError, SpecificationErrors
 from dyknow.mtl import syntax
+from dyknow.mtl.check import check
+from dyknow.mtl.monitors import Monitor
 from dyknow.mtl.parser import parse_formula
-from dyknow.mtl.syntax import ALWAYS_HENCEFORTH, Feature, Interval, Name, Number
-from dyknow.time import MILLISECOND, Duration
+from dyknow.mtl.printer import text_from_formula
+from dyknow.mtl.quantifiers import expand
+from dyknow.mtl.syntax import ALWAYS_HENCEFORTH, Feature, Interval, Name, Number, Verdict
+from dyknow.time import MILLISECOND, Duration, TimePoint
 
 
 def test_a_link_condition_is_read_as_it_is_written():
@@ -91,3 +95,49 @@ def test_any_text_is_a_formula_or_a_syntax_error(text):
     """No text makes the parser fail in another way."""
     with suppress(FormulaSyntaxError):
         parse_formula(text)
+
+
+D = 198
+DEEP = [
+    "not " * D + "p",
+    "always [0, 1] eventually [0, 2] " * (D // 2) + "p",
+    " -> ".join(["p", "q"] * (D // 2)),
+    " until ".join(["p", "q"] * (D // 2)),
+    " <-> ".join(["p", "q"] * (D // 2)),
+    "-" * (D - 3) + "x < 1",
+    " + ".join(["x"] * (D - 2)) + " < 1",
+    "(p and (q or " * (D // 2) + "p" + "))" * (D // 2),
+    "".join(f"forall x{i} in C " for i in range(D - 2)) + "p(x3)",
+]
+
+
+@pytest.mark.parametrize("text", DEEP, ids=[text[:12] for text in DEEP])
+def test_what_is_nested_almost_too_deep_goes_all_the_way(text):
+    """A formula at the limit is checked, printed and monitored, and what is left is printed."""
+    formula = parse_formula(text)
+    check(formula)
+    assert parse_formula(text_from_formula(formula)) == formula
+    monitor = Monitor(expand(formula, {"C": ("c1",)}))
+    for time in (1, 5):
+        monitor.step(TimePoint(time), {"p": True, "q": False, "x": 0.5, "p(c1)": True})
+    assert text_from_formula(monitor.residual)
+
+
+def test_too_deep_a_formula_made_in_python_is_a_fault():
+    """The limit holds wherever a formula comes from."""
+    formula = Feature("p")
+    for _ in range(5000):
+        formula = syntax.Negation(formula)
+
+    with pytest.raises(SpecificationErrors) as caught:
+        Monitor(formula)
+    assert "at most 200 operators" in caught.value.exceptions[0].message
+
+
+def test_ten_thousand_operators_are_monitored():
+    """A formula of ten thousand operators that are not nested is like any other."""
+    rules = " and ".join(f"(p -> eventually [0, {i}] x < {i})" for i in range(1, 2501))
+    monitor = Monitor(parse_formula(rules))
+
+    assert monitor.step(TimePoint(0), {"p": True, "x": 2400}) is Verdict.UNDECIDED
+    assert monitor.step(TimePoint(MILLISECOND), {"p": False, "x": 2600}) is Verdict.FALSE
