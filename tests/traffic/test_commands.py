@@ -313,7 +313,7 @@ def test_what_is_whole_is_recovered(recorded_run, traffic):
 
     assert (status, replayed, err) == (0, 0, "")
     assert re.search(r"x.mcap: \d+ messages of \d+ whole chunks, up to \d+ ms", out)
-    assert "a part of the run is missing: it ends at" in " ".join(shown.split())
+    assert "x.mcap: recovered from a damaged recording" in " ".join(shown.split())
     status, _, err = traffic("recover", "cut.mcap", "x.mcap")
     assert status == 2
     assert "x.mcap: there is a file of this name already" in err

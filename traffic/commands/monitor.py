@@ -40,7 +40,7 @@ def monitor(
     ] = _TimeModel.HOLD,
     domain: Annotated[
         list[str] | None,
-        typer.Option(metavar="NAME=OBJECT,…", help="The objects that a quantifier ranges over."),
+        typer.Option(metavar="SORT=A,B", help="The objects that a quantifier ranges over."),
     ] = None,
     explain: Annotated[
         bool,

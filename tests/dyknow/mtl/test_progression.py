@@ -87,7 +87,7 @@ def test_quantifiers_are_progressed_over_their_domain(formula, trace, time_model
     assert agrees(expand(formula, {"D": ("a", "b")}), trace, time_model)
 
 
-@pytest.mark.slow
+@pytest.mark.exhaustive
 @pytest.mark.parametrize("time_model", TimeModel)
 def test_ten_thousand_random_formulas(time_model):
     """Verdict and deciding state agree with the naive meaning, for each time model."""
