@@ -30,7 +30,7 @@ from traffic.benchmarks.workloads import PERIOD, Workload, ignore
 __all__ = ["BENCHMARK"]
 
 _MICROSECONDS = 1e6
-_N_STREAMS = (2, 5, 10, 20, 30, 40, 50)
+_N_STREAMS = (2, 5, 10, 20, 50, 100)
 _N_FOR_PEERS = 20
 _BY_STREAMS = Published(
     source="Heintz (2013), section VIII",
