@@ -45,6 +45,7 @@ lock: setup          ## Resolve the dependencies again (needs uv)
 networks: setup      ## Compile the bundled road networks again (needs the extra "build")
 	$(BIN)/traffic network build data/networks/crossing data/networks/crossing/crossing.net.xml --force
 	$(BIN)/traffic network build data/networks/rural data/networks/rural/rural.net.xml --force
+	$(BIN)/traffic network build data/networks/avenue data/networks/avenue/avenue.net.xml --force
 
 clean:               ## Remove what the other targets made
 	rm -rf .venv .mypy_cache .ruff_cache .pytest_cache .hypothesis build dist
