@@ -3,30 +3,28 @@
 import gzip
 import html
 import re
-import tomllib
 import zlib
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from pathlib import Path
-from typing import Any
 
 from pydantic import ValidationError
-from pydantic_core import ErrorDetails
 
-from dyknow.source_text import SourceText, nearest_name
+from dyknow.source_text import nearest_name
 from dyknow.time import MINUTE, Duration
 from traffic.bundled import data_folder
 from traffic.errors import ScenarioError
+from traffic.scenarios.fields import Settings
 from traffic.scenarios.model import (
     CameraSettings,
     Circulation,
     Flow,
     Scenario,
-    Settings,
     Trips,
     TurnShares,
     VehicleType,
 )
-from traffic.scenarios.places import KeyPath, places_of_keys, span_of
+from traffic.scenarios.places import KeyPath
+from traffic.scenarios.toml_files import faults_of, message_of, read_toml
 
 __all__ = [
     "bundled_scenarios",
@@ -35,14 +33,6 @@ __all__ = [
     "scenario_of_configuration",
 ]
 
-_EXPECTED = {
-    "dict_type": "a table",
-    "model_type": "a table",
-    "path_type": "a text",
-    "string_pattern_mismatch": "a name of letters, digits and '_'",
-    "string_type": "a text",
-    "tuple_type": "an array",
-}
 _GZIP = b"\x1f\x8b"
 
 
@@ -74,19 +64,18 @@ def read_scenario(path: Path) -> Scenario:
     Raises:
         ScenarioError: The file cannot be read or has faults; all of them are named.
     """
-    source = SourceText(str(path), _read_text(path))
-    values = _read_toml(source)
+    source, values = read_toml(path, ScenarioError)
     if "name" in values:
         found_name = [("the name of a scenario is that of its file", ("name",))]
-        raise ScenarioError(*_faults(found_name, source))
+        raise ScenarioError(*faults_of(found_name, source))
     try:
         scenario = Scenario.model_validate(
             {"name": path.stem, **values}, context={"folder": path.parent}
         )
     except ValidationError as error:
-        found = ((_message(detail), detail["loc"]) for detail in error.errors())
-        raise ScenarioError(*_faults(found, source)) from error
-    faults = _faults(_misplaced_names(scenario), source)
+        found = ((message_of(detail, _known_keys), detail["loc"]) for detail in error.errors())
+        raise ScenarioError(*faults_of(found, source)) from error
+    faults = faults_of(_misplaced_names(scenario), source)
     if faults:
         raise ScenarioError(*faults)
     return scenario
@@ -105,58 +94,6 @@ def scenario_of_configuration(path: Path, duration: Duration = MINUTE) -> Scenar
 
 def _bundled_paths() -> dict[str, Path]:
     return {path.stem: path for path in sorted((data_folder() / "scenarios").glob("*.toml"))}
-
-
-def _read_text(path: Path) -> str:
-    try:
-        return path.read_text(encoding="utf-8")
-    except OSError as error:
-        raise ScenarioError(f"cannot read '{path}': {error.strerror}") from error
-    except UnicodeDecodeError as error:
-        raise ScenarioError(f"'{path}' is not a text in UTF-8") from error
-
-
-def _read_toml(source: SourceText) -> dict[str, Any]:
-    try:
-        return tomllib.loads(source.text)
-    except tomllib.TOMLDecodeError as error:
-        text = str(error)
-        at = re.search(r" \(at (?:line (\d+), column (\d+)|end of document)\)$", text)
-        end = source.place(len(source.text))
-        line, column = (int(at[1]), int(at[2])) if at and at[1] else end
-        fault = text[: at.start()] if at else text
-        place = f"{source.name}:{line}:{column}"
-        excerpt = f"{source.line(line)}\n{' ' * (column - 1)}^"
-        raise ScenarioError(f"{place}: {fault[0].lower()}{fault[1:]}\n{excerpt}") from error
-
-
-def _faults(found: Iterable[tuple[str, KeyPath]], source: SourceText) -> list[str]:
-    """Return messages with their places and the lines in question, in reading order."""
-    places = places_of_keys(source)
-    spans = [(span_of(path, places, source), message) for message, path in found]
-    return [
-        f"{span.place}: {message}\n{span.excerpt()}"
-        for span, message in sorted(spans, key=lambda pair: pair[0].start)
-    ]
-
-
-def _message(detail: ErrorDetails) -> str:
-    name = str(detail["loc"][-1]) if detail["loc"] else ""
-    match detail["type"]:
-        case "extra_forbidden":
-            nearest = nearest_name(name, _known_keys(detail["loc"]))
-            hint = f"; did you mean '{nearest}'?" if nearest else ""
-            return f"no key called '{name}' here{hint}"
-        case "too_short":
-            return f"expected at least one item for '{name}', found none"
-        case "missing":
-            return f"the key '{name}' is missing"
-        case "value_error":
-            return detail["msg"].removeprefix("Value error, ")
-        case _:
-            said = detail["msg"].removeprefix("Input should be ").split(", unable")[0]
-            expected = _EXPECTED.get(detail["type"], said)
-            return f"expected {expected}, found {detail['input']!r}"
 
 
 def _known_keys(path: KeyPath) -> list[str]:
