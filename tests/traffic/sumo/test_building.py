@@ -25,7 +25,7 @@ needs_netconvert = pytest.mark.skipif(not has_netconvert(), reason="netconvert i
 
 @pytest.mark.sumo
 @needs_netconvert
-@pytest.mark.parametrize("name", ["avenue", "crossing", "rural"])
+@pytest.mark.parametrize("name", ["avenue", "crossing", "quarter", "rural"])
 def test_the_bundled_networks_are_what_their_sources_give(name: str, tmp_path: Path) -> None:
     """Building a bundled network again gives the committed file, byte for byte."""
     built = tmp_path / "built.net.xml"
