@@ -4,6 +4,8 @@ from collections.abc import Sequence
 from pathlib import Path
 
 __all__ = [
+    "ExperimentError",
+    "LineError",
     "NetworkBuildError",
     "RecordingError",
     "ReplayError",
@@ -11,7 +13,6 @@ __all__ = [
     "ResultError",
     "ScenarioError",
     "SimulatorError",
-    "StatesError",
     "TrafficError",
 ]
 
@@ -83,8 +84,8 @@ class ResultError(TrafficError):
     """A folder of results cannot be written or read."""
 
 
-class StatesError(TrafficError):
-    """Recorded states cannot be read, or a state is not as it should be.
+class LineError(TrafficError):
+    """Something that was recorded line by line cannot be read, or is not as it should be.
 
     Attributes:
         place: Where, as `file:line:column`, as far as that is known.
@@ -93,6 +94,19 @@ class StatesError(TrafficError):
     def __init__(self, place: str, expected: str, found: str) -> None:
         super().__init__(f"{place}: expected {expected}, found {found}")
         self.place = place
+
+
+class ExperimentError(TrafficError):
+    """An experiment is wrong, cannot be conducted, or its folder cannot be written or read.
+
+    Attributes:
+        faults: Everything that is wrong, a text for each; it begins with the place if there is
+            one.
+    """
+
+    def __init__(self, *faults: str) -> None:
+        super().__init__("\n".join(faults))
+        self.faults: tuple[str, ...] = faults
 
 
 class RequestError(TrafficError):

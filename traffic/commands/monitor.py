@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated, cast
 import typer
 
 if TYPE_CHECKING:
-    from traffic.monitoring.lines import ByteStream
+    from traffic.reading.lines import ByteStream
 
 __all__ = ["monitor"]
 

@@ -20,7 +20,8 @@ from traffic.monitoring.following import (
 )
 from traffic.monitoring.questions import Question
 from traffic.monitoring.reasons import Reason
-from traffic.monitoring.states import StateReader, described, text_from_time
+from traffic.monitoring.states import StateReader
+from traffic.reading.times import described, text_from_time
 
 __all__ = ["answer_shown"]
 

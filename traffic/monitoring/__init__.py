@@ -3,7 +3,6 @@
 Read in this order:
 
 - `questions`: the formula that is asked about, its domains, and the features that it needs
-- `lines`: the lines of a file or of standard input, one by one, in bounded memory
 - `states`: what a reader of states does, and everything that can be wrong with a state
 - `json_states`, `csv_states`: the two formats; `opening` tells them apart
 - `following`: the formula followed along the states, up to its verdict

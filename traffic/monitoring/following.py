@@ -10,11 +10,12 @@ from dyknow.mtl.monitors import Monitor
 from dyknow.mtl.printer import text_from_formula
 from dyknow.mtl.syntax import TimeModel, Verdict
 from dyknow.time import MILLISECOND, TimePoint
-from traffic.errors import StatesError
+from traffic.errors import LineError
 from traffic.monitoring.past import Past
 from traffic.monitoring.questions import Question, forbid_missing
 from traffic.monitoring.reasons import Reason, reasons_of
-from traffic.monitoring.states import StateReader, described
+from traffic.monitoring.states import StateReader
+from traffic.reading.times import described
 
 __all__ = ["Answer", "OnStep", "Step", "document_from", "follow", "milliseconds_of"]
 
@@ -75,7 +76,7 @@ def follow(
         on_step: Told about each state. With it, reasons are given for the verdict.
 
     Raises:
-        StatesError: Something is wrong with the states.
+        LineError: Something is wrong with the states.
         SpecificationErrors: The first state does not have all features of the formula.
     """
     monitor = Monitor(question.formula, time_model)
@@ -146,7 +147,7 @@ def _complete(
 
 def _located(
     error: FeatureError, question: Question, states: StateReader, values: Mapping[str, Any]
-) -> StatesError:
+) -> LineError:
     """Return a fault of a value, with its place and as it stands in the state.
 
     A feature of another sort than the formula needs is at fault, whatever it is compared with.
@@ -155,11 +156,9 @@ def _located(
         found = _SORTS.get(type(values.get(term)))
         if sort is not None and found is not None and sort != found:
             expected = f"a {sort} as '{term}'"
-            return StatesError(
-                states.place(term), expected, f"{described(values[term])}, a {found}"
-            )
+            return LineError(states.place(term), expected, f"{described(values[term])}, a {found}")
     place = states.place(error.feature)
-    return StatesError(place, f"{error.expected} as '{error.feature}'", error.found)
+    return LineError(place, f"{error.expected} as '{error.feature}'", error.found)
 
 
 _SORTS = {bool: BOOLEAN, int: NUMBER, float: NUMBER, str: TEXT}

@@ -5,34 +5,27 @@ needs; but a name that stands twice in an object, a value that is an array or an
 number that is not finite are faults wherever they are.
 """
 
-import json
-import re
 from collections.abc import Collection, Iterator, Mapping
-from typing import Any, NamedTuple, NoReturn
+from typing import Any, NoReturn
 
 from pydantic_core import from_json
 
 from dyknow.time import MILLISECOND, TimePoint
-from traffic.errors import StatesError
-from traffic.monitoring.lines import Lines
+from traffic.errors import LineError
 from traffic.monitoring.states import (
-    BEFORE_ALL,
-    LATEST,
     check_order,
-    described,
     match_features,
     missing_feature,
     printed_feature,
-    time_from,
 )
+from traffic.reading.json_lines import columns_in, forbid_repetition, refuse
+from traffic.reading.lines import Lines
+from traffic.reading.times import BEFORE_ALL, LATEST, described, time_from
 
 __all__ = ["JsonStates"]
 
 _INFINITE = (float("inf"), float("-inf"))
 _UNFIT = frozenset({*_INFINITE, None})
-_FAULT = re.compile(r"(?P<what>.*) at line \d+ column (?P<column>\d+)", re.DOTALL)
-_TOKEN = re.compile(r'[{}\[\]]|(?P<key>"(?:[^"\\]|\\.)*")\s*:\s*|"(?:[^"\\]|\\.)*"')
-_NO_NUMBER = re.compile(rb"NaN|-?Infinity")
 
 
 class JsonStates:
@@ -54,7 +47,7 @@ class JsonStates:
         """Yield time and features of each state.
 
         Raises:
-            StatesError: There is no state, or something is wrong with one.
+            LineError: There is no state, or something is wrong with one.
         """
         last = BEFORE_ALL
         for line in self._lines:
@@ -62,7 +55,7 @@ class JsonStates:
                 document = from_json(line, allow_inf_nan=False)
             except ValueError as error:
                 if line.strip():
-                    self._refuse(error)
+                    refuse(self._lines, error, "state")
                 continue
             now, values = self._parts(document, line)
             if now <= last:
@@ -70,7 +63,7 @@ class JsonStates:
             last = now
             yield TimePoint(now), values
         if last == BEFORE_ALL:
-            raise StatesError(self.name, "at least one state", "none")
+            raise LineError(self.name, "at least one state", "none")
 
     def place(self, term: str | None = None) -> str:
         """Return the place of the present state, or of the value of a feature in it."""
@@ -84,16 +77,16 @@ class JsonStates:
     def _parts(self, document: Any, line: bytes) -> tuple[int, Mapping[str, Any]]:
         """Return the time, in nanoseconds, and the features that a line is about."""
         if type(document) is not dict:
-            raise StatesError(self._lines.place(1), "an object", described(document))
+            raise LineError(self._lines.place(1), "an object", described(document))
         t, values = document.get("t"), document.get("values")
         if type(values) is not dict or t is None:
             self._refuse_parts(document)
         if line.count(b":") != len(document) + len(values):
-            self._forbid_repetition()
+            forbid_repetition(self._lines)
         now = t * MILLISECOND if type(t) is int else LATEST + 1
         if not -LATEST <= now <= LATEST:
             if isinstance(t, str):
-                raise StatesError(self._place_of_time(), "a number of milliseconds", described(t))
+                raise LineError(self._place_of_time(), "a number of milliseconds", described(t))
             now = time_from(t, self._place_of_time)
         return now, self._fit(values)
 
@@ -118,60 +111,30 @@ class JsonStates:
         """Find out by which names the features that are needed are called."""
         self._keys, twice = match_features(self._terms, values)
         for term, (_, other) in twice.items():
-            raise StatesError(self._place_of_value(other), f"'{term}' once", f"'{other}' as well")
+            raise LineError(self._place_of_value(other), f"'{term}' once", f"'{other}' as well")
         complete = len(self._keys) == len(self._terms)
         self._is_as_printed = complete and all(t == key for t, key in self._keys.items())
         return {term: values[key] for term, key in self._keys.items()}
 
     def _place_of_time(self) -> str:
-        return self._lines.place(self._columns().get("t"))
+        return self._lines.place(columns_in(self._lines).get("t"))
 
     def _place_of_value(self, key: str | None) -> str:
         """Return where the value of a feature is, or only the line if that is not to be found."""
         if key is None:
             return self._lines.place()
-        return self._lines.place(self._columns(of_values=True).get(key))
-
-    def _columns(self, *, of_values: bool = False) -> dict[str, int]:
-        """Return where the value of each name is, in the line's object or in `values`."""
-        text = self._lines.line.decode("utf-8", "replace")
-        keys = list(_keys_in(text))
-        outer = {key.name: key.column for key in keys if key.inside == 1}
-        if not of_values:
-            return outer
-        return {key.name: key.column for key in keys if key.inside == outer.get("values")}
-
-    def _refuse(self, error: ValueError) -> NoReturn:
-        """Say what is wrong with a line that is not JSON."""
-        lines = self._lines
-        match = _FAULT.fullmatch(str(error))
-        at = max(0, int(match["column"]) - 1) if match else 0
-        what = match["what"] if match else str(error)
-        if lines.is_cut_off and what.startswith("EOF"):
-            place = lines.place(lines.column(len(lines.line)))
-            raise StatesError(place, "the rest of the state", "the end of the file") from None
-        text = lines.text()
-        begin = text.lstrip()
-        if begin[0] not in "{[":
-            place = lines.place(len(text) - len(begin) + 1)
-            raise StatesError(place, "an object of JSON", described(begin)) from None
-        number = _NO_NUMBER.match(lines.line, max(0, at - 1)) or _NO_NUMBER.match(lines.line, at)
-        if number is not None:
-            place, found = lines.place(lines.column(number.start())), number[0].decode()
-            raise StatesError(place, "a finite number", found) from None
-        place = lines.place(lines.column(at))
-        raise StatesError(place, "an object of JSON", f"a fault in it ({what})") from None
+        return self._lines.place(columns_in(self._lines, "values").get(key))
 
     def _refuse_parts(self, document: dict[str, Any]) -> NoReturn:
         """Say what is wrong with a line that has no time or no values."""
         for key, what in (("t", "a time"), ("values", "an object with the features")):
             if key not in document:
                 found = missing_feature(key, document)
-                raise StatesError(self._lines.place(1), f"'{key}', {what}", found)
+                raise LineError(self._lines.place(1), f"'{key}', {what}", found)
         if document["t"] is None:
-            raise StatesError(self._place_of_time(), "a number of milliseconds", "null")
-        place = self._lines.place(self._columns()["values"])
-        raise StatesError(place, "an object with the features", described(document["values"]))
+            raise LineError(self._place_of_time(), "a number of milliseconds", "null")
+        place = self._lines.place(columns_in(self._lines)["values"])
+        raise LineError(place, "an object with the features", described(document["values"]))
 
     def _forbid_unfit(self, values: Mapping[str, Any]) -> None:
         for key, value in values.items():
@@ -183,42 +146,4 @@ class JsonStates:
                 expected, found = f"a value of '{key}'", "null"
             else:
                 continue
-            raise StatesError(self._place_of_value(key), expected, found)
-
-    def _forbid_repetition(self) -> None:
-        """Look for a name that stands twice, as there are more colons than names."""
-        seen: set[tuple[str, int]] = set()
-        for name, column, inside in _keys_in(self._lines.text()):
-            if (name, inside) in seen:
-                raise StatesError(self._lines.place(column), f"'{name}' once", "it twice")
-            seen.add((name, inside))
-
-
-class _Key(NamedTuple):
-    """A name in a line of JSON.
-
-    Attributes:
-        name: The name.
-        column: Where its value begins, from 1.
-        inside: Where the object begins that it belongs to; of the line's own object, 1.
-    """
-
-    name: str
-    column: int
-    inside: int
-
-
-def _keys_in(text: str) -> Iterator[_Key]:
-    """Yield each name of an object in a line of JSON."""
-    opened: list[int] = []
-    for token in _TOKEN.finditer(text):
-        match token[0][0]:
-            case "{" | "[":
-                opened.append(token.start() + 1 if opened else 1)
-            case "}" | "]":
-                opened.pop()
-            case _ if token["key"] is not None:
-                name = json.loads(token["key"], strict=False)
-                yield _Key(name, token.end() + 1, opened[-1])
-            case _:
-                pass
+            raise LineError(self._place_of_value(key), expected, found)

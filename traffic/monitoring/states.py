@@ -5,36 +5,22 @@ when the formula looks at a value, has its place as well.
 """
 
 import re
-from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
-from decimal import Decimal, InvalidOperation
+from collections.abc import Collection, Iterable, Iterator, Mapping
 from typing import Any, Protocol
 
 from dyknow.source_text import nearest_name
-from dyknow.time import MILLISECOND, TimePoint
-from traffic.errors import StatesError
+from dyknow.time import TimePoint
+from traffic.errors import LineError
+from traffic.reading.times import text_from_time
 
 __all__ = [
-    "BEFORE_ALL",
-    "LATEST",
     "StateReader",
     "check_order",
-    "described",
     "match_features",
     "missing_feature",
     "printed_feature",
-    "text_from_time",
-    "time_from",
 ]
 
-LATEST = 1 << 62
-"""The greatest time, and with its sign changed the smallest: some 146 years of nanoseconds."""
-
-BEFORE_ALL = -LATEST - 1
-"""The time of no state, before those of all."""
-
-_LATEST_ROUNDED = LATEST / MILLISECOND
-_NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?|inf", re.ASCII)
-_SHOWN = 40
 _FEATURE = re.compile(r"\s*([^\s\[(]+)\s*(?:\((.*)\)|\[(.*)\])\s*", re.DOTALL)
 
 
@@ -49,7 +35,7 @@ class StateReader(Protocol):
         """Yield the time of each state and its features, by their printed terms.
 
         Raises:
-            StatesError: There is no state, or something is wrong with one.
+            LineError: There is no state, or something is wrong with one.
         """
 
     def place(self, term: str | None = None) -> str:
@@ -59,57 +45,13 @@ class StateReader(Protocol):
         """Return the features that are there in the present state, as they are printed."""
 
 
-def time_from(amount: object, place: Callable[[], str]) -> int:
-    """Return the time of so many milliseconds, a number or its digits, in nanoseconds.
-
-    Raises:
-        StatesError: It is no number, finer than a nanosecond, or too large.
-    """
-    expected = "a time in milliseconds"
-    digits = str(amount)
-    if not _NUMBER.fullmatch(digits):
-        raise StatesError(place(), expected, described(amount))
-    if abs(float(digits)) >= _LATEST_ROUNDED:
-        expected = f"a time of at most {LATEST // MILLISECOND} milliseconds"
-        raise StatesError(place(), expected, described(amount))
-    try:
-        exact = Decimal(digits) * MILLISECOND
-    except InvalidOperation:  # digits further behind the point than can be counted
-        exact = Decimal("0.5")
-    if exact != int(exact):
-        raise StatesError(place(), "a time in whole nanoseconds", f"{digits} milliseconds")
-    return int(exact)
-
-
-def text_from_time(time: int) -> str:
-    """Write a time in milliseconds, exactly."""
-    whole, rest = divmod(abs(time), MILLISECOND)
-    sign = "-" if time < 0 else ""
-    return f"{sign}{whole}.{rest:06d}".rstrip("0").rstrip(".")
-
-
 def check_order(last: int, now: int, place: str) -> None:
-    """Raise a `StatesError` unless *now* is a time later than *last*."""
+    """Raise a `LineError` unless *now* is a time later than *last*."""
     expected = f"states in order of time, after {text_from_time(last)} ms"
     if now == last:
-        raise StatesError(place, expected, f"another one at {text_from_time(now)} ms")
+        raise LineError(place, expected, f"another one at {text_from_time(now)} ms")
     if now < last:
-        raise StatesError(place, expected, f"one at {text_from_time(now)} ms")
-
-
-def described(value: object) -> str:
-    """Return a value of a state as it is written there, shortened."""
-    match value:
-        case None | bool():
-            return {None: "null", True: "true", False: "false"}[value]
-        case str():
-            return repr(_shortened(value))
-        case list():
-            return "an array"
-        case dict():
-            return "an object"
-        case _:
-            return _shortened(str(value))
+        raise LineError(place, expected, f"one at {text_from_time(now)} ms")
 
 
 def printed_feature(key: str) -> str:
@@ -148,7 +90,3 @@ def missing_feature(term: str, keys: Iterable[str]) -> str:
     """Return what is found instead of a feature: nothing, and the nearest name."""
     nearest = nearest_name(term, map(printed_feature, keys))
     return f"none; did you mean '{nearest}'?" if nearest else "none"
-
-
-def _shortened(text: str) -> str:
-    return text if len(text) <= _SHOWN else f"{text[:_SHOWN]}…"

@@ -8,7 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from tests.support.state_files import reader_of, states_in
-from traffic.errors import StatesError
+from traffic.errors import LineError
 
 NAMES = st.text(st.characters(codec="utf-8", exclude_characters="\r\n\0"), min_size=1, max_size=8)
 
@@ -80,7 +80,7 @@ def test_cells_are_read_as_the_formula_needs_them(cell, formula, value):
 )
 def test_faults_have_their_place(rows, message):
     """File, line and column, what was expected and what was found."""
-    with pytest.raises(StatesError) as raised:
+    with pytest.raises(LineError) as raised:
         states_in(rows, "p", ".csv")
 
     assert str(raised.value).startswith("states:")
@@ -93,14 +93,14 @@ def test_numbers_are_finite(cell, formula):
     """What is no finite number is refused where a number belongs, and never guessed."""
     if formula == "x = y" and cell in {"fast", "1_000"}:
         return
-    with pytest.raises(StatesError, match=r"states:2:3: expected a (number|value)"):
+    with pytest.raises(LineError, match=r"states:2:3: expected a (number|value)"):
         states_in(f"t,x,y\n1,{cell},1", formula, ".csv")
 
 
 def test_other_bytes_are_refused():
     """What is not UTF-8 is no state; a byte order mark is passed over."""
     assert states_in(b"\xef\xbb\xbft,p\n1,1") == [(1_000_000, {"p": True})]
-    with pytest.raises(StatesError, match="states:2:3: expected UTF-8, found the byte 0xe9"):
+    with pytest.raises(LineError, match="states:2:3: expected UTF-8, found the byte 0xe9"):
         states_in(b"t,p\n1,\xe9")
 
 

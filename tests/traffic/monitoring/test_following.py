@@ -12,7 +12,7 @@ from dyknow.mtl.printer import text_from_formula
 from dyknow.mtl.syntax import TimeModel, Verdict
 from tests.dyknow.mtl.formulas import small_formulas, traces
 from tests.support.state_files import Pieces, asked
-from traffic.errors import StatesError
+from traffic.errors import LineError
 from traffic.monitoring.following import document_from, follow, milliseconds_of
 from traffic.monitoring.opening import read_states
 
@@ -57,7 +57,7 @@ def test_no_more_is_read_than_is_needed():
     text = '{"t":0,"values":{"p":true}}\n{"t":1,"values":{"p":false}}\nnonsense'
 
     assert answer_to("always p", text).decided_at == 1_000_000
-    with pytest.raises(StatesError, match="f:3:1"):
+    with pytest.raises(LineError, match="f:3:1"):
         answer_to("eventually [5, 9] p", text)
 
 
@@ -119,7 +119,7 @@ def test_values_that_the_formula_cannot_take_have_their_place(formula, values, m
     first = '{"t": 0, "values": {"p": ' + fit + "}}"
     text = first + '\n{"t": 1, "values": {' + values + "}}"
 
-    with pytest.raises(StatesError) as raised:
+    with pytest.raises(LineError) as raised:
         answer_to(f"always [5, 9] ({formula})", text)
 
     assert message in str(raised.value)

@@ -7,7 +7,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from tests.support.state_files import reader_of, states_in
-from traffic.errors import StatesError
+from traffic.errors import LineError
 
 ORDER = "expected states in order of time, after 1 ms"
 VALUE = "expected a boolean, a number or a text"
@@ -79,7 +79,7 @@ def test_states_may_spell_features_in_turn():
 )  # fmt: skip
 def test_faults_have_their_place(line, message):
     """File, line and column, what was expected and what was found."""
-    with pytest.raises(StatesError) as raised:
+    with pytest.raises(LineError) as raised:
         states_in(GOOD + line)
 
     assert str(raised.value).startswith("states:2")
@@ -88,13 +88,13 @@ def test_faults_have_their_place(line, message):
 
 def test_features_may_not_be_there_in_both_notations():
     """Which of the two values would count?"""
-    with pytest.raises(StatesError, match=r"1:34: expected 'x\(a\)' once, found 'x\[a\]' as well"):
+    with pytest.raises(LineError, match=r"1:34: expected 'x\(a\)' once, found 'x\[a\]' as well"):
         states_in('{"t":1,"values":{"x(a)":1,"x[a]":2}}', "x(a) > 1", ".jsonl")
 
 
 def test_other_bytes_are_refused():
     """What is not UTF-8 is no state."""
-    with pytest.raises(StatesError, match="states:1:20: expected UTF-8, found the byte 0xff"):
+    with pytest.raises(LineError, match="states:1:20: expected UTF-8, found the byte 0xff"):
         states_in(b'{"t":1,"values":{"p\xff":1}}')
 
 

@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 
 from dyknow.errors import SpecificationErrors
 from tests.support.state_files import Pieces, asked, reader_of, states_in
-from traffic.errors import StatesError
+from traffic.errors import LineError
 from traffic.monitoring.following import follow
 from traffic.monitoring.opening import open_states, read_states
 
@@ -46,15 +46,15 @@ def test_names_tell_the_format(tmp_path):
 @pytest.mark.parametrize("text", ["", "\n", " \n\n"])
 def test_nothing_is_no_state(text, ending):
     """An empty file is a fault."""
-    with pytest.raises(StatesError, match="expected at least one state, found none"):
+    with pytest.raises(LineError, match="expected at least one state, found none"):
         states_in(text, "p", ending)
 
 
 def test_endless_blanks_end(monkeypatch):
     """Looking for the first character ends where a line would."""
-    monkeypatch.setattr("traffic.monitoring.opening.LONGEST_LINE", 50)
+    monkeypatch.setattr("traffic.reading.formats.LONGEST_LINE", 50)
 
-    with pytest.raises(StatesError, match="expected at least one state"):
+    with pytest.raises(LineError, match="expected at least one state"):
         read_states(Pieces(b" " * 1_000, 10), "f", {})
 
 
@@ -87,7 +87,7 @@ def test_damaged_states_are_read_or_refused(content, ending, size):
     refused = None
     try:
         follow(QUESTION, read_states(Pieces(content, size), "f", QUESTION.sorts, ending))
-    except StatesError as error:
+    except LineError as error:
         refused = error.place
     except SpecificationErrors as errors:
         refused = str(errors.exceptions[0]).removeprefix("the state at ")
@@ -107,7 +107,7 @@ def test_any_json_is_read_or_refused(document):
     place = "states"
     try:
         list(reader_of(json.dumps(document), "p and x(a) > 1", ".jsonl"))
-    except StatesError as error:
+    except LineError as error:
         place = error.place
 
     assert place.startswith("states")

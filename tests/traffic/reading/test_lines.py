@@ -5,9 +5,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from tests.support.state_files import Pieces
-from traffic.errors import StatesError
-from traffic.monitoring import lines as module
-from traffic.monitoring.lines import Lines
+from traffic.errors import LineError
+from traffic.reading import lines as module
+from traffic.reading.lines import Lines
 
 
 @settings(derandomize=True, deadline=None, max_examples=200)
@@ -55,7 +55,7 @@ def test_endless_lines_are_refused(monkeypatch):
     """A line without end does not fill the memory."""
     monkeypatch.setattr(module, "LONGEST_LINE", 100)
 
-    with pytest.raises(StatesError, match=r"f:2: expected a line of at most 100 bytes"):
+    with pytest.raises(LineError, match=r"f:2: expected a line of at most 100 bytes"):
         list(Lines(Pieces(b"a\n" + b"b" * 1_000, 10), "f"))
 
 
@@ -64,5 +64,5 @@ def test_other_encodings_are_refused():
     lines = Lines(Pieces("ä".encode() + b"\xff"), "f")
     list(lines)
 
-    with pytest.raises(StatesError, match="f:1:2: expected UTF-8, found the byte 0xff"):
+    with pytest.raises(LineError, match="f:1:2: expected UTF-8, found the byte 0xff"):
         lines.text()

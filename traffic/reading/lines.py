@@ -3,7 +3,7 @@
 from collections.abc import Iterator
 from typing import Protocol
 
-from traffic.errors import StatesError
+from traffic.errors import LineError
 
 __all__ = ["LONGEST_LINE", "ByteStream", "Lines"]
 
@@ -44,7 +44,7 @@ class Lines:
         """Yield the lines.
 
         Raises:
-            StatesError: A line is too long.
+            LineError: A line is too long.
         """
         rest = b""
         while block := self._stream.read1(_AT_A_TIME):
@@ -53,7 +53,7 @@ class Lines:
                 yield self._next(line)
             if len(rest) > LONGEST_LINE:
                 self.number += 1
-                raise StatesError(self.place(), f"a line of at most {LONGEST_LINE} bytes", "more")
+                raise LineError(self.place(), f"a line of at most {LONGEST_LINE} bytes", "more")
         if rest:
             self.is_cut_off = True
             yield self._next(rest)
@@ -71,13 +71,13 @@ class Lines:
         """Return the present line as text.
 
         Raises:
-            StatesError: It is not UTF-8.
+            LineError: It is not UTF-8.
         """
         try:
             return self.line.decode()
         except UnicodeDecodeError as error:
             found = f"the byte 0x{self.line[error.start]:02x}"
-            raise StatesError(self.place(self.column(error.start)), "UTF-8", found) from None
+            raise LineError(self.place(self.column(error.start)), "UTF-8", found) from None
 
     def _next(self, line: bytes) -> bytes:
         if self.number == 0:
