@@ -3,10 +3,11 @@
 Read in this order: `geometry` (polylines), `parts` (a network in plain parts), `stretches` and
 `topology` (which junctions are crossings, which edges make a link), `graph` (directed roads),
 `turns` (left, right, straight, back), `links` (positions along links), `regions` (areas),
-`markings`, `roads` (the `RoadMap`), `assembling` (from parts to map), `checking` and `reading`
-(SUMO networks), `building` (made-up ones), `errors`.
+`markings`, `roads` (the `RoadMap`), `ahead` (what is ahead of what), `assembling` (from parts to
+map), `checking` and `reading` (SUMO networks), `building` (made-up ones), `errors`.
 """
 
+from networks.ahead import RoadsAhead
 from networks.errors import NetworkError, NetworkFileError, UnknownPlaceError
 from networks.markings import Marking, MarkingKind
 from networks.reading import read_road_map
@@ -22,6 +23,7 @@ __all__ = [
     "NetworkFileError",
     "Places",
     "RoadMap",
+    "RoadsAhead",
     "Turn",
     "UnknownPlaceError",
     "read_road_map",
