@@ -6,6 +6,7 @@ the lower object and `to` the upper one. The unit *cu* has the form of `LinkUnit
 """
 
 from dataclasses import dataclass
+from enum import StrEnum
 from typing import Protocol
 
 from anchoring.motion import Floats
@@ -14,7 +15,7 @@ from dyknow.mtl.syntax import Formula
 from dyknow.streams.table import Column, Ids, Table
 from dyknow.time import Duration, TimePoint
 
-__all__ = ["DEVIATION", "DISTANCE", "Link", "LinkSettings", "LinkUnit"]
+__all__ = ["DEVIATION", "DISTANCE", "Link", "LinkEnd", "LinkSettings", "LinkUnit"]
 
 DISTANCE = "xydist"
 """The feature that is the distance from a lower to an upper object in the plane, in metres."""
@@ -41,6 +42,19 @@ class LinkSettings:
     remove_after: Duration
 
 
+class LinkEnd(StrEnum):
+    """Why a link was removed."""
+
+    VANISHED = "vanished"
+    """The lower object was gone, or no longer observed."""
+
+    VIOLATED = "violated"
+    """The maintain condition had become false."""
+
+    GIVEN_UP = "given up"
+    """The upper object had been without observations for too long."""
+
+
 @dataclass(frozen=True, slots=True)
 class Link:
     """The hypothesis that two objects are the same physical object, over a stretch of time.
@@ -50,12 +64,14 @@ class Link:
         lower: Symbol of the object its state is computed from, such as `on_road_object7`.
         begin: When the link was made.
         end: When it was removed, or None while it stands.
+        ended_by: Why it was removed, if that was told.
     """
 
     upper: str
     lower: str
     begin: TimePoint
     end: TimePoint | None = None
+    ended_by: LinkEnd | None = None
 
     def holds_at(self, time: TimePoint) -> bool:
         """Return whether the link stands at *time*."""

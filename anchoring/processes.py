@@ -21,7 +21,7 @@ import numpy as np
 
 from anchoring.candidates import Candidates, Unlinked
 from anchoring.conditions import Condition
-from anchoring.links import LinkSettings, LinkUnit
+from anchoring.links import LinkEnd, LinkSettings, LinkUnit
 from anchoring.rows import Mask, Rows, take, with_rows
 from anchoring.structures import LinkHistory
 from dyknow.mtl.monitors import MonitorColumns
@@ -93,7 +93,7 @@ class LinkProcess(Reactive):
         there = at >= 0
         if not self._unit.trusts_predictions:
             there[there] = observed[at[there]]
-        self._unlink(self._standing.upper[~there], self._step, now)
+        self._unlink(self._standing.upper[~there], self._step, now, LinkEnd.VANISHED)
         self._standing.keep(there)
         self._waiting.keep(np.isin(self._waiting.ids, lower.ids[observed]))
 
@@ -112,16 +112,16 @@ class LinkProcess(Reactive):
         truth = standing.condition.truth(take(lower, at), known)
         violated = standing.monitor.step(now, truth) < 0
         broken = standing.lower[violated]
-        self._unlink(standing.upper[violated], self._step + 1, now)
+        self._unlink(standing.upper[violated], self._step + 1, now, LinkEnd.VIOLATED)
         standing.keep(~violated)
         self._predict(on[violated], now)
         return broken
 
-    def _unlink(self, upper: Ids, since: int, now: TimePoint) -> None:
+    def _unlink(self, upper: Ids, since: int, now: TimePoint, reason: LinkEnd) -> None:
         uppers = self._uppers
         uppers.since[positions_of(upper, uppers.table.ids)] = since
         for object_id in upper.tolist():
-            self.history.remove(uppers.table.symbol(object_id), now)
+            self.history.remove(uppers.table.symbol(object_id), now, reason)
 
     def _begin_waiting(self, observed: Ids, broken: Ids) -> None:
         known = np.concatenate((self._standing.lower, self._waiting.ids, broken))
@@ -178,7 +178,7 @@ class LinkProcess(Reactive):
         if kept.all():
             return
         linked = uppers.since == _LINKED
-        self._unlink(uppers.table.ids[~kept & linked], self._step, now)
+        self._unlink(uppers.table.ids[~kept & linked], self._step, now, LinkEnd.GIVEN_UP)
         uppers.keep(kept)
         self._standing.keep(np.isin(self._standing.upper, uppers.table.ids))
 

@@ -9,7 +9,7 @@ from collections import defaultdict
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, replace
 
-from anchoring.links import Link
+from anchoring.links import Link, LinkEnd
 from dyknow.time import TimePoint
 
 __all__ = ["LinkHistory", "ObjectLinkageStructure", "ObjectLinkageStructures"]
@@ -31,10 +31,10 @@ class LinkHistory:
         self._by_upper[upper].append(Link(upper, lower, time))
         self._uppers_by_lower[lower].append(upper)
 
-    def remove(self, upper: str, time: TimePoint) -> None:
-        """Record that the standing link of *upper* was removed."""
+    def remove(self, upper: str, time: TimePoint, reason: LinkEnd | None = None) -> None:
+        """Record that the standing link of *upper* was removed, and why."""
         links = self._by_upper[upper]
-        links[-1] = replace(links[-1], end=time)
+        links[-1] = replace(links[-1], end=time, ended_by=reason)
 
     def of_upper(self, symbol: str) -> tuple[Link, ...]:
         """Return the links of an upper object, oldest first."""
@@ -68,6 +68,11 @@ class ObjectLinkageStructures:
 
     def __init__(self, histories: Iterable[LinkHistory]) -> None:
         self._histories = tuple(histories)
+
+    @property
+    def histories(self) -> tuple[LinkHistory, ...]:
+        """The histories of the link processes, in the order in which they were given."""
+        return self._histories
 
     def structure_of(self, symbol: str, time: TimePoint) -> ObjectLinkageStructure:
         """Return the structure of *symbol* at *time*; it has no links if there were none."""
