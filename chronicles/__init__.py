@@ -9,7 +9,8 @@ without end),
 `instances` (partial instances and how they are found), `counting`, `matching` (which instances
 begin, go on, complete, or die), `joining` (how an event joins them), `reporting` (which matches
 are reported), `prospects` (partial instances as people see them), `recognition` (the
-recogniser), `processes` (the recogniser on streams); `errors`.
+recogniser), `processes` (the recogniser on streams), `recognised` (what it recognises as events
+for others); `errors`.
 """
 
 from chronicles.events import Event, Recognition
