@@ -54,6 +54,7 @@ def origin_of(request: RunRequest, files: Iterable[Path] = ()) -> Origin:
             "sample_period_ns": request.sample_period,
             "position_noise": request.position_noise,
             "seed": request.seed,
+            "recognise": None if request.recognise is None else ",".join(request.recognise),
             "specification": None if request.specification is None else str(request.specification),
         },
         scenario=request.scenario,

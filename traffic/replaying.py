@@ -145,7 +145,7 @@ class _Replay:
 
     def _run(self, wanted: RecordingRequest, on_progress: OnProgress) -> RunResult:
         truth = simulation_of(self._recording)
-        scorer = None if truth is None else scorer_for(self._world, truth)
+        scorer = None if truth is None else scorer_for(self._world, truth, self._system)
         watch = Watch(self._system, scorer, is_governed=False)
         told = told_of(self._description.origin)
         if not self._recorded.is_complete:

@@ -24,6 +24,7 @@ DEFAULT_PERIOD = Duration(100 * MILLISECOND)
 FRAME_PERIOD = Duration(40 * MILLISECOND)
 """Of the cameras."""
 
+_EVERYTHING = "all"
 _LONGEST_STEP = 100
 _SHORTEST_PERIOD = 10
 _FARTHEST = 1e7
@@ -94,6 +95,7 @@ class RunRequest:
         specification: File of the network of processes; None for the bundled one.
         real_time: Whether to keep to the clock on the wall.
         longest_frame_period: How far apart images may be when the work falls behind that clock.
+        recognise: Names of what is to be recognised, such as `turns`; None for everything.
     """
 
     scenario: Scenario
@@ -107,6 +109,7 @@ class RunRequest:
     specification: Path | None = None
     real_time: bool = False
     longest_frame_period: Duration = FRAME_PERIOD
+    recognise: tuple[str, ...] | None = None
 
     @classmethod
     def from_texts(  # noqa: PLR0913, one for each option of the command
@@ -128,6 +131,7 @@ class RunRequest:
         specification: Path | None = None,
         real_time: bool = False,
         longest_frame_period: str | None = None,
+        recognise: str | None = None,
     ) -> "RunRequest":
         """Read what a user wrote on the command line.
 
@@ -176,14 +180,15 @@ class RunRequest:
             specification=specification,
             real_time=real_time,
             longest_frame_period=_longest_frame_period(longest_frame_period, real_time=real_time),
+            recognise=_recognise(recognise, asked, is_bundled=specification is None),
         )
 
 
-def labels_from(text: str, option: str) -> tuple[str, ...]:
+def labels_from(text: str, option: str, what: str = "labels of streams") -> tuple[str, ...]:
     """Return the labels in *text*, which are separated by commas; those in brackets are not.
 
     Raises:
-        RequestError: There is none.
+        RequestError: There is none; the message says *what* was expected.
     """
     parts, depth = [""], 0
     for character in text:
@@ -194,8 +199,21 @@ def labels_from(text: str, option: str) -> tuple[str, ...]:
             parts[-1] += character
     labels = [label.strip() for label in parts if label.strip()]
     if not labels:
-        raise RequestError(option, "labels of streams, separated by commas", text)
+        raise RequestError(option, f"{what}, separated by commas", text)
     return tuple(dict.fromkeys(labels))
+
+
+def _recognise(
+    text: str | None, scenario: Scenario, *, is_bundled: bool
+) -> tuple[str, ...] | None:
+    """Return what is to be recognised: what is asked for, or else what the scenario says.
+
+    A scenario speaks of the bundled specification; of another one everything is wanted.
+    """
+    if text is None:
+        return scenario.recognise if is_bundled else None
+    names = labels_from(text, "--recognise", "'all', or names such as turns and overtakes")
+    return None if names == (_EVERYTHING,) else names
 
 
 def _view(text: str) -> View:

@@ -4,8 +4,9 @@ A run writes one folder, once. It is put together under a name ending in `.parti
 when it is whole, so that an interrupted run never looks like a finished one.
 """
 
+import re
 import shutil
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
@@ -23,6 +24,7 @@ __all__ = [
     "Score",
     "StreamDifference",
     "Timing",
+    "car_names",
     "new_folder",
     "read_result",
     "run_folder",
@@ -30,6 +32,7 @@ __all__ = [
 ]
 
 _RESULT_FILE = "result.json"
+_CAR = re.compile(r"c(ar)?\d*")
 
 
 class _Value(BaseModel):
@@ -51,6 +54,7 @@ class RecognitionResult(_Value):
             belongs to no vehicle.
         agrees: Whether the truth knows this manoeuvre; None if it happened, but not wholly in
             view, or if no truth applies.
+        kind: The line of the score in which it counts; None if no truth applies.
     """
 
     chronicle: str
@@ -62,15 +66,17 @@ class RecognitionResult(_Value):
     events: list[dict[str, Any]]
     truth: dict[str, str] | None
     agrees: bool | None
+    kind: str | None = None
 
 
 class Manoeuvre(_Value):
     """A true manoeuvre, for the list of what was missed.
 
     Attributes:
-        kind: `left`, `right`, `straight`, `uturn` or `overtake`.
-        vehicles: The simulator's ids: of the turning vehicle, or of overtaker and overtaken.
-        place: Names of the link, crossing and link, or of the link.
+        kind: What happened, such as `turn_left` or `overtake`.
+        vehicles: The simulator's ids, such as those of overtaker and overtaken.
+        place: Where, by names of the map, if a recognition has to say so: of a turn the link,
+            the crossing and the link.
         begin: milliseconds.
         end: milliseconds.
     """
@@ -217,6 +223,11 @@ class RunResult(_Value):
     violations: dict[str, int] = {}
     failures: list[str] = []
     replay: Replay | None = None
+
+
+def car_names(arguments: Mapping[str, str]) -> tuple[str, ...]:
+    """Return which arguments of a recognition are cars, by their names: `c`, `c2`, `car1`."""
+    return tuple(name for name in arguments if _CAR.fullmatch(name))
 
 
 @contextmanager

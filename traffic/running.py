@@ -8,6 +8,7 @@ from dyknow.inspection.taking import snapshot
 from dyknow.kpl.names import Declarations
 from dyknow.kpl.plan import Network
 from dyknow.kpl.syntax import Specification
+from dyknow.source_text import nearest_name
 from dyknow.streams.sample import Sample
 from dyknow.streams.table import Table
 from dyknow.time import MILLISECOND
@@ -27,12 +28,17 @@ from traffic.system import (
     MonitoringSystem,
     bundled_specification,
     outputs_of,
+    outputs_of_sort,
     read_specification,
 )
 from traffic.watching import IMAGES, OnProgress, Watch, told_of
 from traffic.world import World, camera_of, generators_of
 
 __all__ = ["run_scenario", "scorer_for", "write_network"]
+
+_RECOGNITIONS = "recognitions"
+_RECOGNISED = "recognised_"
+"""Before the names of the output streams that `--recognise` chooses from."""
 
 
 def run_scenario(request: RunRequest, on_progress: OnProgress) -> tuple[RunResult, Path]:
@@ -58,7 +64,7 @@ def run_scenario(request: RunRequest, on_progress: OnProgress) -> tuple[RunResul
         system = _system(request, specification, world)
         description = _description(request, system)
         write_origin(description.origin, description.named_text, system.files, folder)
-        scorer = scorer_for(world, simulation)
+        scorer = scorer_for(world, simulation, system)
         vehicles.observers.append(scorer.observe_frame)
         watch = Watch(system, scorer)
         with (
@@ -113,10 +119,10 @@ class _Vehicles:
             yield Sample(frame.vehicles, frame.time, frame.time)
 
 
-def scorer_for(world: World, simulation: Simulation) -> Scorer:
-    """Return what scores a run in *world*, given the truth that *simulation* knows."""
+def scorer_for(world: World, simulation: Simulation, system: MonitoringSystem) -> Scorer:
+    """Return what scores a run of *system* in *world*, by the truth that *simulation* knows."""
     footprint = world.camera.footprint() if world.camera is not None else None
-    return Scorer(world.road_map, simulation, footprint)
+    return Scorer(world.road_map, simulation, footprint, system.chronicles)
 
 
 def write_network(network: Network, folder: Path) -> None:
@@ -125,11 +131,34 @@ def write_network(network: Network, folder: Path) -> None:
 
 
 def _system(request: RunRequest, specification: Specification, world: World) -> MonitoringSystem:
-    outputs = outputs_of(specification)
+    outputs = _outputs(request, specification)
     if request.overlay is not None:
         outputs += tuple(name for name in IMAGES if name not in outputs)
     parameters = _parameters(request, specification)
     return MonitoringSystem(world, parameters, outputs, specification=specification)
+
+
+def _outputs(request: RunRequest, specification: Specification) -> tuple[str, ...]:
+    """Return the names of the output streams that are wanted, without those of images.
+
+    Raises:
+        RequestError: Something is to be recognised that the specification does not tell.
+    """
+    names = outputs_of(specification)
+    told = outputs_of_sort(specification, _RECOGNITIONS)
+    by_name = {name.removeprefix(_RECOGNISED): name for name in told}
+    if request.recognise is None:
+        return names
+    for name in request.recognise:
+        if name not in by_name:
+            nearest = nearest_name(name, by_name)
+            hint = f"; did you mean '{nearest}'?" if nearest else ""
+            expected = f"'all', or some of {', '.join(by_name)} with commas between them{hint}"
+            is_asked = request.recognise != request.scenario.recognise
+            place = "--recognise" if is_asked else "'recognise' in the scenario"
+            raise RequestError(place, expected, name)
+    unwanted = set(told) - {by_name[name] for name in request.recognise}
+    return tuple(name for name in names if name not in unwanted)
 
 
 def _description(request: RunRequest, system: MonitoringSystem) -> RunDescription:

@@ -99,6 +99,7 @@ class MonitoringSystem:
         network: The network.
         structures: Which symbol was linked to which objects, down to the percepts.
         files: That units have read, such as chronicles.
+        chronicles: Names of the chronicles that can be recognised.
     """
 
     def __init__(
@@ -118,6 +119,7 @@ class MonitoringSystem:
         )
         self.structures = ObjectLinkageStructures(made.histories)
         self.files = tuple(dict.fromkeys(made.files))
+        self.chronicles = tuple(dict.fromkeys(made.chronicles))
 
 
 @dataclass(frozen=True, slots=True)
@@ -127,10 +129,12 @@ class Made:
     Attributes:
         histories: Of the link processes, in the order in which they were made.
         files: That units have read.
+        chronicles: Names of the chronicles of all recognisers.
     """
 
     histories: list[LinkHistory] = field(default_factory=list)
     files: list[Path] = field(default_factory=list)
+    chronicles: list[str] = field(default_factory=list)
 
 
 def implementations_of(
@@ -151,7 +155,7 @@ def implementations_of(
     made = Made() if made is None else made
     return Implementations(
         sources={**_sources(world), **(sources or {})},
-        units=_units(world, made.files),
+        units=_units(world, made),
         link=_Links(world.road_map, made.histories).make,
     )
 
@@ -371,7 +375,7 @@ def _sources(world: World) -> dict[str, Any]:
     }
 
 
-def _units(world: World, files: list[Path]) -> dict[str, Any]:
+def _units(world: World, made: Made) -> dict[str, Any]:
     country, colour, thermal, positions = world.generator.spawn(4)
     painter = cache(lambda: _painter(world.road_map, country))
     vocabularies = {"link": world.road_map.links, "crossing": world.road_map.crossings}
@@ -385,15 +389,15 @@ def _units(world: World, files: list[Path]) -> dict[str, Any]:
         "NearPairs": NearPairs,
         "CarRelations": CarRelations,
         "Changes": partial(Changes, vocabularies),
-        "Chronicles": _Chronicles(files).recogniser,
+        "Chronicles": _Chronicles(made).recogniser,
     }
 
 
 class _Chronicles:
-    """Makes recognisers, and notes which files they have read."""
+    """Makes recognisers, and notes which files they have read, and what they recognise."""
 
-    def __init__(self, files: list[Path]) -> None:
-        self._files = files
+    def __init__(self, made: Made) -> None:
+        self._made = made
 
     def recogniser(self, *, file: str, max_delay: Duration) -> ChronicleRecogniser:
         """Recognise the chronicles of a file: a bundled one by name, or any by its path."""
@@ -401,7 +405,8 @@ class _Chronicles:
         if not path.suffix:
             path = data_folder() / "chronicles" / f"{file}.chronicle"
         models = models_from_chronicles(read_chronicles(path))
-        self._files.append(path)
+        self._made.files.append(path)
+        self._made.chronicles.extend(model.name for model in models)
         return ChronicleRecogniser(models, max_delay=max_delay)
 
 

@@ -24,6 +24,12 @@ def run(
         str,
         typer.Option(help="'vision': through the cameras; 'truth': positions of the simulator."),
     ] = "vision",
+    recognise: Annotated[
+        str | None,
+        typer.Option(
+            help="What: names such as 'turns,overtakes', or 'all'; default: the scenario's."
+        ),
+    ] = None,
     sample_period: Annotated[
         str, typer.Option(help="Period of the reasoning: milliseconds, or with a unit.")
     ] = "100",
@@ -86,6 +92,7 @@ def run(
         specification=specification,
         real_time=real_time,
         longest_frame_period=longest_frame_period,
+        recognise=recognise,
     )
     with progress() as on_progress:
         result, folder = run_scenario(request, on_progress)

@@ -11,7 +11,7 @@ from rich.progress import BarColumn, Progress, TextColumn, TimeRemainingColumn
 from rich.table import Table
 
 from traffic.maps import MapSummary
-from traffic.results import RecognitionResult, Replay, RunResult, Score
+from traffic.results import RecognitionResult, Replay, RunResult, Score, car_names
 
 __all__ = ["progress", "show_network", "show_result", "show_scores"]
 
@@ -101,19 +101,25 @@ def _recognitions(result: RunResult) -> Table:
             escape(recognition.chronicle.replace("_", " ")),
             _who(recognition),
             _where(recognition),
-            _VERDICTS[recognition.agrees] if result.score else _UNKNOWN,
+            _verdict(recognition, result.score),
         )
     return table
 
 
+def _verdict(recognition: RecognitionResult, score: Mapping[str, Score]) -> str:
+    is_judged = recognition.agrees is not None or recognition.kind in score
+    return _VERDICTS[recognition.agrees] if is_judged else _UNKNOWN
+
+
 def _who(recognition: RecognitionResult) -> str:
     truth = recognition.truth or {}
-    cars = {k: v for k, v in recognition.arguments.items() if k.startswith("c")}
-    return ", ".join(f"{escape(v)} [dim]({escape(truth.get(k, '?'))})[/]" for k, v in cars.items())
+    cars = [(name, recognition.arguments[name]) for name in car_names(recognition.arguments)]
+    return ", ".join(f"{escape(v)} [dim]({escape(truth.get(k, '?'))})[/]" for k, v in cars)
 
 
 def _where(recognition: RecognitionResult) -> str:
-    places = [v for k, v in recognition.arguments.items() if not k.startswith("c")]
+    cars = car_names(recognition.arguments)
+    places = [v for k, v in recognition.arguments.items() if k not in cars]
     return escape(" → ".join(places))
 
 
@@ -125,7 +131,7 @@ def _missed(result: RunResult) -> Table:
         table.add_row(
             f"{manoeuvre.begin / 1000:.1f}",
             f"{manoeuvre.end / 1000:.1f}",
-            escape(manoeuvre.kind),
+            escape(manoeuvre.kind.replace("_", " ")),
             escape(", ".join(manoeuvre.vehicles)),
             escape(" → ".join(manoeuvre.place)),
         )
@@ -138,7 +144,7 @@ def _scores(score_by_run: Mapping[str, Mapping[str, Score]]) -> Table:
     table = Table("", "", *counts, box=SIMPLE_HEAD, title="Score", caption=caption)
     for run, score_by_kind in score_by_run.items():
         for kind, score in score_by_kind.items():
-            table.add_row(escape(run), kind, *_row(score))
+            table.add_row(escape(run), escape(kind.replace("_", " ")), *_row(score))
     return table
 
 

@@ -5,6 +5,7 @@ its own. As TOML:
 
     network = "crossing"          # a bundled network, or a path beside the scenario
     duration = "60 s"
+    recognise = ["turns"]         # all that the specification tells, if this is left out
     [camera]                      # look_at, altitude, field_of_view, heading, width, height
     [[vehicle_types]]             # what vehicles are like
     [[flows]]                     # vehicles along given roads
@@ -225,6 +226,8 @@ class Scenario(Settings):
         flows: Vehicles along given roads.
         trips: Vehicles between random roads.
         circulations: Vehicles that drive about for ever.
+        recognise: What is to be recognised unless a run asks for something else, such as
+            `turns`; everything if the scenario does not say.
         sumo: Further options of the simulator.
     """
 
@@ -242,6 +245,7 @@ class Scenario(Settings):
     flows: tuple[Flow, ...] = ()
     trips: tuple[Trips, ...] = ()
     circulations: tuple[Circulation, ...] = ()
+    recognise: Annotated[tuple[str, ...], Field(min_length=1)] | None = None
     sumo: dict[str, _Option] = {}
 
     @model_validator(mode="before")

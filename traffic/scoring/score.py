@@ -1,6 +1,6 @@
-"""Precision and recall of a run: recognised turns and overtakes against the true ones."""
+"""Precision and recall of a run: what was recognised against what vehicles truly did."""
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Collection, Iterable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -9,27 +9,18 @@ import numpy.typing as npt
 from chronicles.events import Recognition, json_from_event
 from dyknow.streams.sample import Sample
 from dyknow.streams.table import Table
-from dyknow.time import MILLISECOND, SECOND, Duration
+from dyknow.time import MILLISECOND
 from networks.roads import RoadMap
-from traffic.results import Manoeuvre, RecognitionResult, Score
+from traffic.results import Manoeuvre, RecognitionResult, Score, car_names
 from traffic.scoring.association import Association
+from traffic.scoring.claims import claim_of, kinds_claimed
 from traffic.scoring.matching import Episode, match
 from traffic.sumo.simulation import Frame, Simulation
 from traffic.truth.ground_truth import GroundTruth
-from traffic.truth.overtakes import TrueOvertake
-from traffic.truth.turns import TrueTurn
+from traffic.truth.manoeuvres import TrueManoeuvre
+from traffic.truth.watchers import WATCHERS
 
 __all__ = ["Scorer", "Verdict", "unjudged"]
-
-_MARGIN = Duration(2 * SECOND)
-"""A manoeuvre has been seen if its vehicles were in view from so long before it to so long after:
-a turn needs the links it leads from and to, an overtake being behind and being in front."""
-
-_TOLERANCE = Duration(3 * SECOND)
-"""How far apart in time a recognition and the manoeuvre that explains it may be."""
-
-_TURN = "turn_"
-_OVERTAKE = "overtake"
 
 Points = npt.NDArray[np.float64]
 
@@ -41,7 +32,8 @@ class Verdict:
     Attributes:
         recognitions: In the order given, with what the truth says about each.
         missed: True manoeuvres in view that no recognition explains.
-        score: Counts, precision and recall of `turn` and `overtake`.
+        score: Counts, precision and recall of each kind that the run could recognise and the
+            truth knows; all turns are one kind.
     """
 
     recognitions: list[RecognitionResult]
@@ -56,15 +48,21 @@ class Scorer:
         road_map: The map.
         simulation: Names vehicles and lanes.
         footprint: The ground in view, shape (k, 2), metres; None if everything is.
+        chronicles: Names of the chronicles that the run may recognise.
     """
 
     def __init__(
-        self, road_map: RoadMap, simulation: Simulation, footprint: Points | None
+        self,
+        road_map: RoadMap,
+        simulation: Simulation,
+        footprint: Points | None,
+        chronicles: Collection[str],
     ) -> None:
-        self._map = road_map
+        claimed = kinds_claimed(chronicles)
+        self._kinds = {kind: each for kind, each in WATCHERS.items() if kind in claimed}
         self._names = simulation.names
         self._footprint = footprint
-        self._truth = GroundTruth(road_map, simulation.lanes, _MARGIN)
+        self._truth = GroundTruth(road_map, simulation.lanes, self._kinds)
         self._association = Association()
         self._frame: Frame | None = None
 
@@ -89,45 +87,60 @@ class Scorer:
         """Compare *recognitions* with the truth."""
         vehicles = [self._vehicles(recognition) for recognition in recognitions]
         claims = list(map(_claim, recognitions, vehicles))
-        turns, overtakes = self._truth.turns(), self._truth.overtakes()
-        truths = [*map(self._true_turn, turns), *map(self._true_overtake, overtakes)]
-        in_view = [turn.in_view for turn in turns] + [overtake.in_view for overtake in overtakes]
-        pairs = match(claims, truths, _TOLERANCE)
+        found = self._truth.manoeuvres()
+        truths = list(map(_truth, found))
+        in_view = [each.in_view for each in found]
+        tolerances = {kind: each.tolerance for kind, each in self._kinds.items()}
+        pairs = match(claims, truths, tolerances)
         agreement = [_agreement(pairs.get(i), in_view) for i in range(len(claims))]
-        found = set(pairs.values())
+        explained = set(pairs.values())
         missed = [
             self._manoeuvre(truth)
             for j, truth in enumerate(truths)
-            if in_view[j] and j not in found
+            if in_view[j] and j not in explained
         ]
-        results = list(map(self._result, recognitions, vehicles, agreement))
-        return Verdict(results, missed, _scores(claims, agreement, truths, in_view))
+        lines = [self._line(claim) for claim in claims]
+        results = list(map(self._result, recognitions, vehicles, agreement, lines))
+        return Verdict(results, missed, self._scores(lines, agreement, found))
 
     def _vehicles(self, recognition: Recognition) -> dict[str, int] | None:
         """Return the vehicle that each car among the arguments stood for, if all stood for one."""
         found = {
             name: self._association.vehicle_of(
-                int(symbol.removeprefix("car")), recognition.begin, recognition.end
+                int(recognition.arguments[name].removeprefix("car")),
+                recognition.begin,
+                recognition.end,
             )
-            for name, symbol in recognition.arguments.items()
-            if name.startswith("c")
+            for name in car_names(recognition.arguments)
         }
         known = {name: vehicle for name, vehicle in found.items() if vehicle is not None}
         return known if len(known) == len(found) else None
 
-    def _true_turn(self, true: TrueTurn) -> Episode:
-        links, crossings = self._map.links, self._map.crossings
-        place = (links[true.link1], crossings[true.crossing], links[true.link2])
-        return Episode(("turn", true.turn.value, (true.vehicle,), place), true.begin, true.end)
+    def _line(self, claim: Episode) -> str | None:
+        """Return the line of the score in which a claim counts, if the truth knows its kind."""
+        kind = claim.key[0]
+        return (self._kinds[kind].score or kind) if kind in self._kinds else None
 
-    def _true_overtake(self, true: TrueOvertake) -> Episode:
-        vehicles = (true.overtaker, true.overtaken)
-        return Episode(("overtake", _OVERTAKE, vehicles, ()), true.begin, true.end)
+    def _scores(
+        self,
+        lines: Sequence[str | None],
+        agreement: Sequence[bool | None],
+        truths: Sequence[TrueManoeuvre],
+    ) -> dict[str, Score]:
+        """Return the counts of each line, in the order of the kinds."""
+        line_by_kind = {kind: each.score or kind for kind, each in self._kinds.items()}
+        return {
+            line: _score(
+                [true.in_view for true in truths if line_by_kind[true.kind] == line],
+                [right for right, its in zip(agreement, lines, strict=True) if its == line],
+            )
+            for line in dict.fromkeys(line_by_kind.values())
+        }
 
     def _manoeuvre(self, episode: Episode) -> Manoeuvre:
-        _, what, vehicles, place = episode.key
+        kind, vehicles, place = episode.key
         return Manoeuvre(
-            kind=what,
+            kind=kind,
             vehicles=[self._names[vehicle] for vehicle in vehicles],
             place=list(place),
             begin=episode.begin / MILLISECOND,
@@ -139,22 +152,20 @@ class Scorer:
         recognition: Recognition,
         vehicles: dict[str, int] | None,
         agrees: bool | None,  # noqa: FBT001, a value of the result
+        line: str | None,
     ) -> RecognitionResult:
         known = vehicles if vehicles is not None else {}
         names = {name: self._names[one] for name, one in known.items()}
-        return _result(recognition, names or None, agrees)
+        said = _result(recognition, names or None)
+        return said.model_copy(update={"agrees": agrees if line else None, "kind": line})
 
 
 def unjudged(recognitions: Sequence[Recognition]) -> Verdict:
     """Return what is said of *recognitions* when no truth is known."""
-    return Verdict([_result(recognition, None, None) for recognition in recognitions], [], {})
+    return Verdict([_result(recognition, None) for recognition in recognitions], [], {})
 
 
-def _result(
-    recognition: Recognition,
-    truth: dict[str, str] | None,
-    agrees: bool | None,  # noqa: FBT001, a value of the result
-) -> RecognitionResult:
+def _result(recognition: Recognition, truth: dict[str, str] | None) -> RecognitionResult:
     return RecognitionResult(
         chronicle=recognition.chronicle,
         arguments=recognition.arguments,
@@ -164,19 +175,20 @@ def _result(
         recognised_at=recognition.recognised_at / MILLISECOND,
         events=[json_from_event(event) for event in recognition.events],
         truth=truth,
-        agrees=agrees,
+        agrees=None,
     )
 
 
 def _claim(recognition: Recognition, vehicles: dict[str, int] | None) -> Episode:
     """Return what a recognition says, in the words of the truth."""
     who = tuple(vehicles.values()) if vehicles is not None else ()
-    begin, end = recognition.begin, recognition.end
-    if recognition.chronicle.startswith(_TURN):
-        direction = recognition.chronicle.removeprefix(_TURN).split("_")[0]
-        place = tuple(recognition.arguments[name] for name in ("l1", "x", "l2"))
-        return Episode(("turn", direction, who, place), begin, end)
-    return Episode((recognition.chronicle, _OVERTAKE, who, ()), begin, end)
+    said = claim_of(recognition.chronicle)
+    key = said.kind, who, said.place_of(recognition)
+    return Episode(key, recognition.begin, recognition.end)
+
+
+def _truth(found: TrueManoeuvre) -> Episode:
+    return Episode((found.kind, found.vehicles, found.place), found.begin, found.end)
 
 
 def _agreement(truth: int | None, in_view: Sequence[bool]) -> bool | None:
@@ -184,25 +196,6 @@ def _agreement(truth: int | None, in_view: Sequence[bool]) -> bool | None:
     if truth is None:
         return False
     return True if in_view[truth] else None
-
-
-def _scores(
-    claims: Sequence[Episode],
-    agreement: Sequence[bool | None],
-    truths: Sequence[Episode],
-    in_view: Sequence[bool],
-) -> dict[str, Score]:
-    return {
-        kind: _score(
-            [seen for seen, truth in zip(in_view, truths, strict=True) if truth.key[0] == kind],
-            [
-                right
-                for right, claim in zip(agreement, claims, strict=True)
-                if claim.key[0] == kind
-            ],
-        )
-        for kind in ("turn", "overtake")
-    }
 
 
 def _score(truths_in_view: Iterable[bool], agreement: Iterable[bool | None]) -> Score:

@@ -1,6 +1,5 @@
 """The true overtakes."""
 
-import enum
 from collections.abc import Iterator
 from dataclasses import dataclass
 
@@ -9,9 +8,12 @@ import numpy.typing as npt
 
 from dyknow.streams.table import Table
 from dyknow.time import MINUTE, Duration, TimePoint
+from networks.roads import RoadMap
+from traffic.sumo.simulation import Frame
+from traffic.truth.manoeuvres import TrueManoeuvre
 from traffic.truth.places import TruePlaces
 
-__all__ = ["OvertakeWatcher", "Side", "TrueOvertake"]
+__all__ = ["OvertakeWatcher"]
 
 Floats = npt.NDArray[np.float64]
 Positions = npt.NDArray[np.intp]
@@ -23,41 +25,6 @@ _LONGEST: Duration = MINUTE
 _KEY_SHIFT = 32
 
 
-class Side(enum.Enum):
-    """On which side of the other the overtaker passed, seen in the direction of travel."""
-
-    LEFT = "left"
-    RIGHT = "right"
-
-
-@dataclass(frozen=True, slots=True)
-class TrueOvertake:
-    """A vehicle passed another on the same link.
-
-    Attributes:
-        overtaker: Id of the vehicle that was behind first.
-        overtaken: Id of the vehicle that was in front first.
-        link: The link.
-        begin: The last frame in which the overtaker is behind.
-        end: The first frame in which it is in front.
-        side: On which side it passed.
-        in_view: Whether both were in view all the while.
-    """
-
-    overtaker: int
-    overtaken: int
-    link: int
-    begin: TimePoint
-    end: TimePoint
-    side: Side
-    in_view: bool = True
-
-    @property
-    def vehicles(self) -> tuple[int, ...]:
-        """The ids of all vehicles that take part."""
-        return (self.overtaker, self.overtaken)
-
-
 class OvertakeWatcher:
     """Compares all vehicles that are near each other on a link and travel the same way.
 
@@ -67,19 +34,33 @@ class OvertakeWatcher:
     later. In all frames from one to the other both are on the same link, travel in the same
     direction at more than 3 m/s, and are within 60 m of each other. So the changes of order in
     queues are none, and neither is passing a vehicle that stands.
+
+    Each is told twice: as an `overtake`, and as an `overtake_left` or an `overtake_right`, by the
+    side on which A was of B, seen in the direction of travel, when their centres were nearest to
+    each other along the link. The vehicles are A and B.
     """
 
     def __init__(self) -> None:
         self._pairs = _Pairs.none()
 
-    def observe(self, time: TimePoint, vehicles: Table, places: TruePlaces) -> list[TrueOvertake]:
+    @classmethod
+    def on(cls, _: RoadMap) -> "OvertakeWatcher":
+        """Return a watcher, which is the same for every map."""
+        return cls()
+
+    def observe(self, frame: Frame, places: TruePlaces) -> list[TrueManoeuvre]:
         """Take in a frame and return the overtakes that end in it."""
+        time, vehicles = frame.time, frame.vehicles
         now = _near_pairs(time, vehicles, places)
         before, known = _matched(self._pairs, now)
         ended = self._ended(time, before, now, known)
         found = list(_overtakes(time, before, now, np.flatnonzero(ended)))
         self._pairs = _carried(before, now, known)
         return found
+
+    def finish(self) -> list[TrueManoeuvre]:
+        """Return nothing: who is beside another at the end has not overtaken it yet."""
+        return []
 
     @staticmethod
     def _ended(
@@ -224,17 +205,18 @@ def _carried(before: _Pairs, now: _Pairs, known: npt.NDArray[np.bool_]) -> _Pair
 
 def _overtakes(
     time: TimePoint, before: _Pairs, now: _Pairs, ended: Positions
-) -> Iterator[TrueOvertake]:
+) -> Iterator[TrueManoeuvre]:
     for row in ended:
         pair = (int(now.key[row] >> _KEY_SHIFT), int(now.key[row]) & ((1 << _KEY_SHIFT) - 1))
         was_behind = 0 if before.order[row] > 0 else 1
         closest = before if before.gap[row] <= now.gap[row] else now
         larger_is_left = closest.aside[row] > 0
-        yield TrueOvertake(
-            overtaker=pair[was_behind],
-            overtaken=pair[1 - was_behind],
-            link=int(now.way[row]) // 2,
-            begin=TimePoint(int(before.since[row])),
-            end=time,
-            side=Side.LEFT if larger_is_left == (was_behind == 1) else Side.RIGHT,
-        )
+        side = "left" if larger_is_left == (was_behind == 1) else "right"
+        for kind in ("overtake", f"overtake_{side}"):
+            yield TrueManoeuvre(
+                kind,
+                (pair[was_behind], pair[1 - was_behind]),
+                (),
+                TimePoint(int(before.since[row])),
+                time,
+            )

@@ -1,51 +1,28 @@
 """The true passages of vehicles through crossings."""
 
-from collections.abc import Iterator
-from dataclasses import dataclass
+from collections.abc import Iterator, Sequence
 
 import numpy as np
 import numpy.typing as npt
 
 from dyknow.streams.table import Ids
 from dyknow.time import TimePoint
-from networks.turns import Turn, Turns
+from networks.roads import RoadMap
+from networks.turns import Turns
+from traffic.sumo.simulation import Frame
+from traffic.truth.manoeuvres import TrueManoeuvre
 from traffic.truth.places import TruePlaces
 
-__all__ = ["TrueTurn", "TurnWatcher"]
-
-
-@dataclass(frozen=True, slots=True)
-class TrueTurn:
-    """A vehicle passed through a crossing, from one link to another or back to the same.
-
-    Attributes:
-        vehicle: Its id.
-        link1: The link from which it came.
-        crossing: The crossing.
-        link2: The link on which it went on.
-        turn: Left, right, straight or U-turn, as the road map has it.
-        begin: The first frame in which its front bumper is in the crossing.
-        end: The first frame in which its front bumper is on the second link.
-        in_view: Whether it was in view all the while.
-    """
-
-    vehicle: int
-    link1: int
-    crossing: int
-    link2: int
-    turn: Turn
-    begin: TimePoint
-    end: TimePoint
-    in_view: bool = True
-
-    @property
-    def vehicles(self) -> tuple[int, ...]:
-        """The ids of all vehicles that take part."""
-        return (self.vehicle,)
+__all__ = ["TurnWatcher"]
 
 
 class TurnWatcher:
     """Follows vehicles through crossings.
+
+    The kinds are `turn_left`, `turn_right`, `turn_straight` and `turn_uturn`.
+    The place of a turn is the link from which the vehicle came, the crossing, and the link on
+    which it went on, which may be the same. It begins in the first frame in which the front
+    bumper is in the crossing and ends in the first in which it is on the second link.
 
     A vehicle makes a turn when it is on a link, then for one or more frames in one crossing, then
     on a link, and in no frame of these nowhere or missing; the simulator's lanes decide which
@@ -55,10 +32,14 @@ class TurnWatcher:
 
     Args:
         turns: How one turns, by link, crossing and link.
+        links: Names of the links.
+        crossings: Names of the crossings.
     """
 
-    def __init__(self, turns: Turns) -> None:
+    def __init__(self, turns: Turns, links: Sequence[str], crossings: Sequence[str]) -> None:
         self._turns = turns
+        self._links = links
+        self._crossings = crossings
         self._between: dict[tuple[int, int], set[int]] = {}
         for link1, crossing, link2 in turns:
             self._between.setdefault((link1, link2), set()).add(crossing)
@@ -66,8 +47,14 @@ class TurnWatcher:
         self._link, self._crossing = np.full((2, 0), -1, dtype=np.int64)
         self._entered, self._last = np.full((2, 0), -1, dtype=np.int64)
 
-    def observe(self, time: TimePoint, ids: Ids, places: TruePlaces) -> list[TrueTurn]:
+    @classmethod
+    def on(cls, road_map: RoadMap) -> "TurnWatcher":
+        """Return a watcher of the turns that a map knows."""
+        return cls(road_map.turns, road_map.links, road_map.crossings)
+
+    def observe(self, frame: Frame, places: TruePlaces) -> list[TrueManoeuvre]:
         """Take in a frame and return the turns that end in it."""
+        time, ids = frame.time, frame.vehicles.ids
         self._frame += 1
         self._make_room(ids)
         broken = (self._last[ids] != self._frame - 1) | ((places.link < 0) & (places.crossing < 0))
@@ -76,6 +63,10 @@ class TurnWatcher:
         self._enter(time, ids, places)
         return list(self._leave(time, ids, places))
 
+    def finish(self) -> list[TrueManoeuvre]:
+        """Return nothing: where a vehicle in a crossing will go is not known."""
+        return []
+
     def _enter(self, time: TimePoint, ids: Ids, places: TruePlaces) -> None:
         entering = (places.crossing >= 0) & (places.crossing != self._crossing[ids])
         who = ids[entering]
@@ -83,7 +74,7 @@ class TurnWatcher:
         self._crossing[who] = places.crossing[entering]
         self._entered[who] = time
 
-    def _leave(self, time: TimePoint, ids: Ids, places: TruePlaces) -> Iterator[TrueTurn]:
+    def _leave(self, time: TimePoint, ids: Ids, places: TruePlaces) -> Iterator[TrueManoeuvre]:
         link = places.link
         before, through = self._link[ids], self._crossing[ids]
         leaving = (link >= 0) & (before >= 0) & ((through >= 0) | (before != link))
@@ -95,7 +86,13 @@ class TurnWatcher:
                 crossing, entered = (min(candidates), time) if len(candidates) == 1 else (-1, time)
             turn = self._turns.get((ways[0], crossing, ways[1]))
             if turn is not None:
-                yield TrueTurn(vehicle, ways[0], crossing, ways[1], turn, TimePoint(entered), time)
+                yield TrueManoeuvre(
+                    f"turn_{turn.value}",
+                    (vehicle,),
+                    (self._links[ways[0]], self._crossings[crossing], self._links[ways[1]]),
+                    TimePoint(entered),
+                    time,
+                )
         on_link = link >= 0
         self._link[ids[on_link]] = link[on_link]
         self._crossing[ids[on_link]] = -1

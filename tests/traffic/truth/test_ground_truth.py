@@ -1,6 +1,7 @@
 """Ground truth of recorded poses on the networks that come with the program."""
 
 from collections.abc import Iterator, Sequence
+from dataclasses import replace
 from functools import cache
 
 import numpy as np
@@ -9,11 +10,11 @@ from dyknow.streams.table import Table
 from dyknow.time import SECOND, Duration, TimePoint
 from networks.reading import read_road_map
 from networks.roads import RoadMap
-from networks.turns import Turn
 from traffic.bundled import data_folder
 from traffic.sumo.simulation import Frame
 from traffic.truth.ground_truth import GroundTruth
-from traffic.truth.overtakes import Side
+from traffic.truth.manoeuvres import TrueManoeuvre
+from traffic.truth.watchers import WATCHERS
 
 Pose = tuple[int, str, float, float, float]
 """Vehicle, lane, metres along it, metres to the left of it, speed."""
@@ -59,13 +60,15 @@ def watch(
     moments: Sequence[Sequence[Pose]],
     footprint: np.ndarray | None = None,
     margin: Duration = NO_TIME,
-) -> GroundTruth:
-    """Return the truth about the moments, a second apart."""
+) -> list[TrueManoeuvre]:
+    """Return the truth about the moments, a second apart: turns, and overtakes on either side."""
     lanes: list[str] = []
-    truth = GroundTruth(road_map(name), lanes, margin)
+    wanted = [kind for kind in WATCHERS if kind.startswith("turn_") or kind == "overtake"]
+    kinds = {kind: replace(WATCHERS[kind], margin=margin) for kind in wanted}
+    truth = GroundTruth(road_map(name), lanes, kinds)
     for frame in frames(name, moments, lanes):
         truth.observe(frame, footprint)
-    return truth
+    return truth.manoeuvres()
 
 
 LEFT_TURN: list[list[Pose]] = [
@@ -88,22 +91,18 @@ PASSING: list[list[Pose]] = [
 
 def test_a_left_turn_passes_two_lanes_inside_the_crossing() -> None:
     """A turn that SUMO splits into two internal lanes is one turn."""
-    crossing = road_map("crossing")
+    (found,) = watch("crossing", LEFT_TURN)
 
-    (found,) = watch("crossing", LEFT_TURN).turns()
-
-    assert found.turn is Turn.LEFT
-    assert crossing.links[found.link1] == "north-centre"
-    assert crossing.crossings[found.crossing] == "centre"
-    assert crossing.links[found.link2] == "east-centre"
+    assert found.kind == "turn_left"
+    assert found.place == ("north-centre", "centre", "east-centre")
     assert (found.begin, found.end, found.in_view) == (2 * SECOND, 4 * SECOND, True)
 
 
 def test_an_overtaker_on_the_opposite_lane_stays_on_its_link() -> None:
     """Positions along the link do not jump when SUMO puts a car on the other direction's lane."""
-    (found,) = watch("rural", PASSING).overtakes()
+    (found,) = watch("rural", PASSING)
 
-    assert (found.overtaker, found.overtaken, found.side) == (0, 1, Side.LEFT)
+    assert (found.kind, found.vehicles) == ("overtake", (0, 1))
     assert (found.begin, found.end) == (2 * SECOND, 4 * SECOND)
 
 
@@ -117,14 +116,14 @@ def test_oncoming_cars_overtake_nobody() -> None:
         for i in range(6)
     ]
 
-    assert watch("rural", meeting).overtakes() == []
+    assert watch("rural", meeting) == []
 
 
 def test_a_manoeuvre_is_in_view_if_its_vehicles_are_all_the_while() -> None:
     """What a footprint covers from begin to end counts, nothing less."""
-    (whole,) = watch("crossing", LEFT_TURN, EVERYWHERE).turns()
-    (cut,) = watch("crossing", LEFT_TURN, NORTH_HALF).turns()
-    (away,) = watch("crossing", LEFT_TURN, ELSEWHERE).turns()
+    (whole,) = watch("crossing", LEFT_TURN, EVERYWHERE)
+    (cut,) = watch("crossing", LEFT_TURN, NORTH_HALF)
+    (away,) = watch("crossing", LEFT_TURN, ELSEWHERE)
 
     assert [whole.in_view, cut.in_view, away.in_view] == [True, False, False]
 
@@ -133,7 +132,17 @@ def test_a_margin_asks_for_more_than_the_manoeuvre() -> None:
     """With a margin, the time before and after has to be in view as well."""
     moments = [*LEFT_TURN, LEFT_TURN[-1]]
 
-    (enough,) = watch("crossing", moments, EVERYWHERE, Duration(2 * SECOND)).turns()
-    (too_short,) = watch("crossing", moments, EVERYWHERE, Duration(3 * SECOND)).turns()
+    (enough,) = watch("crossing", moments, EVERYWHERE, Duration(2 * SECOND))
+    (too_short,) = watch("crossing", moments, EVERYWHERE, Duration(3 * SECOND))
 
     assert [enough.in_view, too_short.in_view] == [True, False]
+
+
+def test_only_what_is_wanted_is_known() -> None:
+    """Of the kinds that one watcher tells, those that nobody asked for are left out."""
+    lanes: list[str] = []
+    truth = GroundTruth(road_map("rural"), lanes, {"overtake_left": WATCHERS["overtake_left"]})
+    for frame in frames("rural", PASSING, lanes):
+        truth.observe(frame)
+
+    assert [each.kind for each in truth.manoeuvres()] == ["overtake_left"]

@@ -9,15 +9,22 @@ from hypothesis import strategies as st
 
 from dyknow.streams.table import Table
 from dyknow.time import SECOND, TimePoint
-from traffic.truth.overtakes import OvertakeWatcher, Side, TrueOvertake
+from traffic.sumo.simulation import Frame
+from traffic.truth.manoeuvres import TrueManoeuvre
+from traffic.truth.overtakes import OvertakeWatcher
 from traffic.truth.places import TruePlaces
 
 Row = tuple[int, float, float, int, float]
 """Vehicle, progress, speed, link, metres to the left of the middle of the road."""
 
 
-def watch(frames: Sequence[Sequence[Row]], step: int = SECOND) -> list[TrueOvertake]:
-    """Return the overtakes among cars of 4 m that travel east."""
+def watch(frames: Sequence[Sequence[Row]], step: int = SECOND) -> list[TrueManoeuvre]:
+    """Return the overtakes among cars of 4 m that travel east, on whichever side."""
+    return [each for each in watch_all(frames, step) if each.kind == "overtake"]
+
+
+def watch_all(frames: Sequence[Sequence[Row]], step: int = SECOND) -> list[TrueManoeuvre]:
+    """Return the same with the overtakes on each side."""
     watcher, found = OvertakeWatcher(), []
     for i, rows in enumerate(frames):
         ids, progress, speed, link, left = (np.array(c) for c in zip(*rows, strict=True))
@@ -34,8 +41,9 @@ def watch(frames: Sequence[Sequence[Row]], step: int = SECOND) -> list[TrueOvert
         )
         none = np.full(n, -1, dtype=np.int32)
         places = TruePlaces(link.astype(np.int32), none, np.ones(n), progress.astype(float))
-        found += watcher.observe(TimePoint(i * step), vehicles, places)
-    return found
+        frame = Frame(TimePoint(i * step), vehicles, Table("vehicle", ids, {}))
+        found += watcher.observe(frame, places)
+    return found + watcher.finish()
 
 
 def pass_by(
@@ -47,25 +55,25 @@ def pass_by(
 
 def test_a_car_that_passes_another_overtakes_it() -> None:
     """From the last frame at least 5 m behind to the first at least 5 m in front, on the left."""
-    assert watch(pass_by()) == [
-        TrueOvertake(0, 1, 0, TimePoint(3 * SECOND), TimePoint(6 * SECOND), Side.LEFT)
+    assert watch_all(pass_by()) == [
+        TrueManoeuvre(kind, (0, 1), (), TimePoint(3 * SECOND), TimePoint(6 * SECOND))
+        for kind in ("overtake", "overtake_left")
     ]
 
 
 def test_the_side_is_that_of_the_overtaker() -> None:
     """A car that passes to the right of the other overtakes on the right."""
-    (found,) = watch(pass_by(left=-3.5))
-
-    assert found.side is Side.RIGHT
+    assert [each.kind for each in watch_all(pass_by(left=-3.5))] == ["overtake", "overtake_right"]
 
 
 def test_the_numbers_of_the_cars_do_not_matter() -> None:
     """The car with the larger id may overtake just as well."""
     swapped = [[(1 - row[0], *row[1:]) for row in rows] for rows in pass_by()]
 
-    (found,) = watch(swapped)
-
-    assert (found.overtaker, found.overtaken, found.side) == (1, 0, Side.LEFT)
+    assert [(each.kind, each.vehicles) for each in watch_all(swapped)] == [
+        ("overtake", (1, 0)),
+        ("overtake_left", (1, 0)),
+    ]
 
 
 def test_slow_changes_of_order_are_none() -> None:
@@ -106,9 +114,10 @@ def test_an_overtake_within_one_step_counts() -> None:
         [(0, x, 20.0, 0, 3.5), (1, 18.0, 8.0, 0, 0.0)] for x in (10.0, 28.0)
     ]
 
-    (found,) = watch(frames)
-
-    assert (found.begin, found.end, found.side) == (0, SECOND, Side.LEFT)
+    assert [(each.kind, each.begin, each.end) for each in watch_all(frames)] == [
+        ("overtake", 0, SECOND),
+        ("overtake_left", 0, SECOND),
+    ]
 
 
 def naive(frames: Sequence[Sequence[Row]]) -> set[tuple[int, int, int, int]]:
@@ -161,6 +170,6 @@ def journeys(draw: st.DrawFn) -> list[list[Row]]:
 @settings(derandomize=True, deadline=None, max_examples=300)
 def test_the_watcher_agrees_with_the_definition(frames: list[list[Row]]) -> None:
     """All pairs at once, frame by frame, give what quantifying over the whole past gives."""
-    found = {(o.overtaker, o.overtaken, o.begin, o.end) for o in watch(frames)}
+    found = {(*found.vehicles, found.begin, found.end) for found in watch(frames)}
 
     assert found == naive(frames)

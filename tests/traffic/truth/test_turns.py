@@ -6,10 +6,13 @@ import numpy as np
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from dyknow.streams.table import Table
 from dyknow.time import TimePoint
 from networks.turns import Turn
+from traffic.sumo.simulation import Frame
+from traffic.truth.manoeuvres import TrueManoeuvre
 from traffic.truth.places import TruePlaces
-from traffic.truth.turns import TrueTurn, TurnWatcher
+from traffic.truth.turns import TurnWatcher
 
 Place = tuple[int, int] | None
 """Link and crossing, one of them -1, or None for a vehicle that is not there."""
@@ -28,22 +31,26 @@ TURNS = {
 }
 
 
-def watch(*paths: Sequence[Place]) -> list[TrueTurn]:
+LINKS, CROSSINGS = ("a", "b", "c"), ("x", "y")
+
+
+def watch(*paths: Sequence[Place]) -> list[TrueManoeuvre]:
     """Return the turns of vehicles 0, 1, ... that are at these places in frames 0, 1, ..."""
-    watcher, found = TurnWatcher(TURNS), []
+    watcher, found = TurnWatcher(TURNS, LINKS, CROSSINGS), []
     for time, places in enumerate(zip(*paths, strict=True)):
         there = [(i, place) for i, place in enumerate(places) if place is not None]
         ids = np.array([i for i, _ in there], dtype=np.int64)
         at = np.array([place for _, place in there], dtype=np.int32).reshape(-1, 2)
         none = np.zeros(len(ids))
-        found += watcher.observe(TimePoint(time), ids, TruePlaces(at[:, 0], at[:, 1], none, none))
-    return found
+        frame = Frame(TimePoint(time), Table("vehicle", ids, {}), Table("vehicle", ids, {}))
+        found += watcher.observe(frame, TruePlaces(at[:, 0], at[:, 1], none, none))
+    return found + watcher.finish()
 
 
 def test_a_passage_from_link_to_link_is_a_turn() -> None:
     """It begins with the first frame in the crossing and ends with the first behind it."""
     assert watch([A, A, X, X, B, B]) == [
-        TrueTurn(0, 0, 0, 1, Turn.LEFT, TimePoint(2), TimePoint(4))
+        TrueManoeuvre("turn_left", (0,), ("a", "x", "b"), TimePoint(2), TimePoint(4))
     ]
 
 
@@ -51,16 +58,16 @@ def test_back_to_the_same_link_is_a_u_turn() -> None:
     """The second link may be the first."""
     (found,) = watch([A, X, A])
 
-    assert found.turn is Turn.UTURN
+    assert (found.kind, found.place) == ("turn_uturn", ("a", "x", "a"))
 
 
 def test_turns_follow_one_another() -> None:
     """The second link of one turn is the first of the next."""
     found = watch([A, X, B, Y, Y, C])
 
-    assert [(t.turn, t.begin, t.end) for t in found] == [
-        (Turn.LEFT, 1, 2),
-        (Turn.STRAIGHT, 3, 5),
+    assert [(t.kind, t.begin, t.end) for t in found] == [
+        ("turn_left", 1, 2),
+        ("turn_straight", 3, 5),
     ]
 
 
@@ -81,7 +88,12 @@ def test_a_crossing_may_be_skipped_by_a_long_step() -> None:
     (found,) = watch([A, B])
     ambiguous = watch([A, C])
 
-    assert (found.crossing, found.turn, found.begin, found.end) == (0, Turn.LEFT, 1, 1)
+    assert (found.kind, found.place, found.begin, found.end) == (
+        "turn_left",
+        ("a", "x", "b"),
+        1,
+        1,
+    )
     assert ambiguous == []
 
 
@@ -90,8 +102,8 @@ def test_ways_that_the_map_does_not_know_are_left_out() -> None:
     assert watch([C, X, A]) == []
 
 
-def naive(path: Sequence[Place]) -> list[tuple[int, int, int, int, int]]:
-    """Return link, crossing, link, begin and end of each turn by reading the definition."""
+def naive(path: Sequence[Place]) -> list[tuple[tuple[str, ...], int, int]]:
+    """Return place, begin and end of each turn by reading the definition."""
     found = []
     for begin in range(1, len(path)):
         for end in range(begin, len(path)):
@@ -106,7 +118,8 @@ def naive(path: Sequence[Place]) -> list[tuple[int, int, int, int, int]]:
             else:
                 continue
             if (before[0], crossing, after[0]) in TURNS:
-                found.append((before[0], crossing, after[0], begin, end))
+                place = (LINKS[before[0]], CROSSINGS[crossing], LINKS[after[0]])
+                found.append((place, begin, end))
     return found
 
 
@@ -125,5 +138,5 @@ def test_the_watcher_agrees_with_the_definition(paths: list[list[Place]]) -> Non
     found = watch(*paths)
 
     for vehicle, path in enumerate(paths):
-        mine = [t for t in found if t.vehicle == vehicle]
-        assert [(t.link1, t.crossing, t.link2, t.begin, t.end) for t in mine] == naive(path)
+        mine = [t for t in found if t.vehicles == (vehicle,)]
+        assert [(t.place, t.begin, t.end) for t in mine] == naive(path)

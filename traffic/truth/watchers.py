@@ -1,0 +1,45 @@
+"""Every kind of manoeuvre that the truth knows, and how it is compared with recognitions."""
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+
+from dyknow.time import SECOND, Duration
+from networks.roads import RoadMap
+from networks.turns import Turn
+from traffic.truth.manoeuvres import Watcher
+from traffic.truth.overtakes import OvertakeWatcher
+from traffic.truth.turns import TurnWatcher
+
+__all__ = ["WATCHERS", "Definition"]
+
+_MARGIN = Duration(2 * SECOND)
+_TOLERANCE = Duration(3 * SECOND)
+
+
+@dataclass(frozen=True, slots=True)
+class Definition:
+    """Who finds the manoeuvres of a kind, and how they are compared with recognitions.
+
+    Attributes:
+        watcher: Makes what finds them on a map; kinds with the same one share what it makes.
+        score: The line of the score in which they count, if several kinds share one; by default
+            the kind itself.
+        margin: A manoeuvre has been seen if its vehicles were in view from so long before it to
+            so long after: a turn needs the links it leads from and to, an overtake being behind
+            and being in front.
+        tolerance: How far apart in time a recognition and the manoeuvre that explains it may be.
+    """
+
+    watcher: Callable[[RoadMap], Watcher]
+    score: str | None = None
+    margin: Duration = _MARGIN
+    tolerance: Duration = _TOLERANCE
+
+
+WATCHERS: Mapping[str, Definition] = {
+    **{f"turn_{turn.value}": Definition(TurnWatcher.on, score="turn") for turn in Turn},
+    "overtake": Definition(OvertakeWatcher.on),
+    "overtake_left": Definition(OvertakeWatcher.on),
+    "overtake_right": Definition(OvertakeWatcher.on),
+}
+"""By kind, in the order in which scores are shown."""
