@@ -11,6 +11,7 @@ its own. As TOML:
     [[flows]]                     # vehicles along given roads
     [[trips]]                     # vehicles between random roads
     [[circulations]]              # vehicles that drive about for ever
+    [[acts]]                      # drivers who do things on purpose
     [sumo]                        # further options of the simulator
 
 Durations are texts such as `"60 s"`; a bare number is milliseconds. Everything else is in SI
@@ -20,90 +21,35 @@ units, except where a name says otherwise; angles of the camera are degrees.
 from pathlib import Path
 from typing import Annotated, Literal, Self
 
-from pydantic import (
-    BaseModel,
-    BeforeValidator,
-    ConfigDict,
-    Field,
-    ValidationInfo,
-    model_validator,
-)
+from pydantic import Field, ValidationInfo, model_validator
 
-from dyknow.time import MILLISECOND, Duration, duration_from_text
+from dyknow.time import MILLISECOND, Duration
 from traffic.bundled import data_folder
+from traffic.scenarios.acts import AnyAct
+from traffic.scenarios.fields import (
+    AnyDuration,
+    LongDuration,
+    Option,
+    Point,
+    Range,
+    Rate,
+    Roads,
+    Settings,
+    StepLength,
+    TypeWeights,
+    Weight,
+    ordered,
+)
 
 __all__ = [
     "CameraSettings",
     "Circulation",
     "Flow",
-    "Range",
     "Scenario",
-    "Settings",
     "Trips",
     "TurnShares",
     "VehicleType",
 ]
-
-
-def _duration(value: object, info: ValidationInfo) -> object:
-    """Read a duration as people write it in files; in Python it is in nanoseconds already."""
-    if info.context is None:
-        return value
-    if isinstance(value, bool) or not isinstance(value, str | int | float):
-        raise ValueError("expected a duration such as '60 s'")  # noqa: TRY004, pydantic wants it
-    return duration_from_text(str(value))
-
-
-def _range(value: object) -> object:
-    if _is_number(value):
-        return value, value
-    return _pair(value, "a number, or [smallest, largest]")
-
-
-def _point(value: object) -> object:
-    return value if isinstance(value, str) else _pair(value, "the name of a junction, or [x, y]")
-
-
-def _pair(value: object, expected: str) -> object:
-    match value:
-        case [x, y] if _is_number(x) and _is_number(y):
-            return value
-        case _:
-            raise ValueError(f"expected {expected}, found {value!r}")
-
-
-def _option(value: object) -> object:
-    if isinstance(value, str | bool | int | float):
-        return value
-    raise ValueError(f"expected a text, a number, true or false, found {value!r}")
-
-
-def _is_number(value: object) -> bool:
-    return isinstance(value, int | float) and not isinstance(value, bool)
-
-
-def _ordered(value: tuple[float, float]) -> tuple[float, float]:
-    if value[0] > value[1]:
-        raise ValueError(f"expected the smaller number first, in {list(value)}")
-    return value
-
-
-_AnyDuration = Annotated[Duration, BeforeValidator(_duration), Field(ge=0)]
-_LongDuration = Annotated[Duration, BeforeValidator(_duration), Field(gt=0)]
-_Size = Annotated[float, Field(gt=0, le=100)]
-Range = Annotated[tuple[_Size, _Size], BeforeValidator(_range)]
-"""A number, or the smallest and the largest of numbers drawn evenly; at most 100 of any unit."""
-
-_Rate = Annotated[float, Field(gt=0, le=100_000)]
-_Weight = Annotated[float, Field(ge=0, le=1e6)]
-_TypeWeights = Annotated[dict[str, Annotated[float, Field(gt=0, le=1e6)]], Field(min_length=1)]
-_Option = Annotated[str | bool | int | float, BeforeValidator(_option)]
-
-
-class Settings(BaseModel):
-    """A table of the file: unknown keys are faults, values never change."""
-
-    model_config = ConfigDict(extra="forbid", frozen=True, allow_inf_nan=False)
 
 
 class CameraSettings(Settings):
@@ -118,7 +64,7 @@ class CameraSettings(Settings):
         height: Of the image, pixels.
     """
 
-    look_at: Annotated[str | tuple[float, float], BeforeValidator(_point)]
+    look_at: Point
     altitude: Annotated[float, Field(gt=0, le=10_000)] = 120.0
     field_of_view: Annotated[float, Field(gt=0, lt=170)] = 67.0
     heading: float = 0.0
@@ -150,12 +96,12 @@ class VehicleType(Settings):
     height: Range = (1.4, 1.6)
     max_speed: Range = (40.0, 55.0)
     speed_factor: Range = (0.9, 1.1)
-    sumo: dict[str, _Option] = {}
+    sumo: dict[str, Option] = Field(default_factory=dict)
 
     @model_validator(mode="after")
     def _ranges_are_ordered(self) -> Self:
         for span in (self.length, self.width, self.height, self.max_speed, self.speed_factor):
-            _ordered(span)
+            ordered(span)
         return self
 
 
@@ -168,9 +114,9 @@ class Flow(Settings):
         types: Weight of each vehicle type.
     """
 
-    route: Annotated[tuple[str, ...], Field(min_length=1)]
-    rate_per_hour: _Rate
-    types: _TypeWeights
+    route: Roads
+    rate_per_hour: Rate
+    types: TypeWeights
 
 
 class Trips(Settings):
@@ -182,18 +128,18 @@ class Trips(Settings):
         min_distance: Between the two roads as the crow flies, metres.
     """
 
-    rate_per_hour: _Rate
-    types: _TypeWeights
+    rate_per_hour: Rate
+    types: TypeWeights
     min_distance: Annotated[float, Field(ge=0)] = 0.0
 
 
 class TurnShares(Settings):
     """How much drivers favour each way out of a junction; only ways that exist count."""
 
-    left: _Weight = 1.0
-    right: _Weight = 1.0
-    straight: _Weight = 1.0
-    uturn: _Weight = 0.0
+    left: Weight = 1.0
+    right: Weight = 1.0
+    straight: Weight = 1.0
+    uturn: Weight = 0.0
 
 
 class Circulation(Settings):
@@ -206,7 +152,7 @@ class Circulation(Settings):
     """
 
     vehicles: Annotated[int, Field(ge=1, le=100_000)]
-    types: _TypeWeights
+    types: TypeWeights
     turns: TurnShares = TurnShares()
 
 
@@ -226,6 +172,7 @@ class Scenario(Settings):
         flows: Vehicles along given roads.
         trips: Vehicles between random roads.
         circulations: Vehicles that drive about for ever.
+        acts: Drivers who do things on purpose.
         recognise: What is to be recognised unless a run asks for something else, such as
             `turns`; everything if the scenario does not say.
         sumo: Further options of the simulator.
@@ -235,18 +182,17 @@ class Scenario(Settings):
     description: str = ""
     network: Path | None = None
     sumocfg: Path | None = None
-    duration: _LongDuration
-    warm_up: _AnyDuration = Duration(0)
-    step_length: Annotated[
-        Duration, BeforeValidator(_duration), Field(ge=MILLISECOND, multiple_of=MILLISECOND)
-    ] = Duration(40 * MILLISECOND)
+    duration: LongDuration
+    warm_up: AnyDuration = Duration(0)
+    step_length: StepLength = Duration(40 * MILLISECOND)
     camera: CameraSettings | None = None
     vehicle_types: tuple[VehicleType, ...] = ()
     flows: tuple[Flow, ...] = ()
     trips: tuple[Trips, ...] = ()
     circulations: tuple[Circulation, ...] = ()
+    acts: tuple[AnyAct, ...] = ()
     recognise: Annotated[tuple[str, ...], Field(min_length=1)] | None = None
-    sumo: dict[str, _Option] = {}
+    sumo: dict[str, Option] = Field(default_factory=dict)
 
     @model_validator(mode="before")
     @classmethod

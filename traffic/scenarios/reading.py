@@ -8,11 +8,13 @@ from collections.abc import Iterator, Mapping
 from pathlib import Path
 
 from pydantic import ValidationError
+from pydantic_core import ErrorDetails
 
 from dyknow.source_text import nearest_name
 from dyknow.time import MINUTE, Duration
 from traffic.bundled import data_folder
 from traffic.errors import ScenarioError
+from traffic.scenarios.acts import ACTS
 from traffic.scenarios.fields import Settings
 from traffic.scenarios.model import (
     CameraSettings,
@@ -73,7 +75,7 @@ def read_scenario(path: Path) -> Scenario:
             {"name": path.stem, **values}, context={"folder": path.parent}
         )
     except ValidationError as error:
-        found = ((message_of(detail, _known_keys), detail["loc"]) for detail in error.errors())
+        found = (_fault(detail) for detail in error.errors())
         raise ScenarioError(*faults_of(found, source)) from error
     faults = faults_of(_misplaced_names(scenario), source)
     if faults:
@@ -96,6 +98,20 @@ def _bundled_paths() -> dict[str, Path]:
     return {path.stem: path for path in sorted((data_folder() / "scenarios").glob("*.toml"))}
 
 
+def _fault(detail: ErrorDetails) -> tuple[str, KeyPath]:
+    """Return what to say about a fault, and its path; an act's kind is no part of a path."""
+    match detail["type"], detail["loc"]:
+        case "union_tag_not_found", path:
+            return "the key 'kind' is missing", path
+        case "union_tag_invalid", path:
+            kind = str(detail["ctx"]["tag"])
+            return _unknown("kind of act", kind, list(ACTS)), (*path, "kind")
+        case _, ("acts", int() as number, str(), *inner):
+            return message_of(detail, _known_keys), ("acts", number, *inner)
+        case _, path:
+            return message_of(detail, _known_keys), path
+
+
 def _known_keys(path: KeyPath) -> list[str]:
     """Return the keys that may stand where the last of *path* stands."""
     sections: Mapping[str, type[Settings]] = {
@@ -107,6 +123,8 @@ def _known_keys(path: KeyPath) -> list[str]:
         "turns": TurnShares,
     }
     outer = [part for part in path[:-1] if isinstance(part, str)]
+    if outer[:1] == ["acts"]:
+        return list(ACTS[outer[1]].model_fields)
     model = sections.get(outer[-1], Scenario) if outer else Scenario
     return [key for key in model.model_fields if (model, key) != (Scenario, "name")]
 
@@ -117,12 +135,30 @@ def _misplaced_names(scenario: Scenario) -> Iterator[tuple[str, KeyPath]]:
     for i, name in enumerate(known):
         if name in known[:i]:
             yield f"there is a vehicle type '{name}' already", ("vehicle_types", i, "name")
+    for path, weights in _casts(scenario):
+        for name in weights:
+            if name not in known:
+                yield _unknown("vehicle type", name, known), (*path, name)
+    yield from _misplaced_files(scenario)
+
+
+def _casts(scenario: Scenario) -> Iterator[tuple[KeyPath, Mapping[str, float]]]:
+    """Yield each table of weights of vehicle types, with its path."""
     for kind in ("flows", "trips", "circulations"):
         for i, demand in enumerate(getattr(scenario, kind)):
-            for name in demand.types:
-                if name not in known:
-                    yield _unknown("vehicle type", name, known), (kind, i, "types", name)
-    yield from _misplaced_files(scenario)
+            yield (kind, i, "types"), demand.types
+    for i, act in enumerate(scenario.acts):
+        for key, weights in act.casts.items():
+            yield ("acts", i, key), weights
+
+
+def _routes(scenario: Scenario) -> Iterator[tuple[KeyPath, tuple[str, ...]]]:
+    """Yield each route, with its path."""
+    for i, flow in enumerate(scenario.flows):
+        yield ("flows", i, "route"), flow.route
+    for i, act in enumerate(scenario.acts):
+        for key, route in act.routes.items():
+            yield ("acts", i, key), route
 
 
 def _misplaced_files(scenario: Scenario) -> Iterator[tuple[str, KeyPath]]:
@@ -151,10 +187,10 @@ def _network_text(path: Path) -> str:
 def _misplaced_roads(scenario: Scenario, network: str) -> Iterator[tuple[str, KeyPath]]:
     """Yield the names that are not in the text of the network, which may be broken."""
     roads = _ids("edge", network)
-    for i, flow in enumerate(scenario.flows):
-        for name in flow.route:
+    for path, route in _routes(scenario):
+        for name in route:
             if name not in roads:
-                yield _unknown("road", name, roads), ("flows", i, "route")
+                yield _unknown("road", name, roads), path
     camera = scenario.camera
     if camera is not None and isinstance(camera.look_at, str):
         junctions = _ids("junction", network)

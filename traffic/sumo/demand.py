@@ -6,7 +6,6 @@ driver. Arrivals are Poisson processes.
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
-from xml.sax.saxutils import quoteattr
 
 import numpy as np
 
@@ -14,14 +13,12 @@ from dyknow.time import SECOND
 from traffic.scenarios.model import (
     Circulation,
     Flow,
-    Range,
     Scenario,
     Trips,
     TurnShares,
-    VehicleType,
 )
-from traffic.sumo.colours import random_colours
 from traffic.sumo.topology import Topology
+from traffic.sumo.vehicle_types import drawn_type, element
 
 __all__ = ["Departure", "departures", "route_document"]
 
@@ -71,9 +68,8 @@ def route_document(
     lines = ['<?xml version="1.0" encoding="UTF-8"?>', "<routes>"]
     for i, departure in enumerate(drawn):
         name = f"{departure.vehicle_type}.{i}"
-        lines.append(
-            _element("vType", _type_attributes(name, types[departure.vehicle_type], generator))
-        )
+        drawn_attributes = drawn_type(name, types[departure.vehicle_type], generator)
+        lines.append(element("vType", drawn_attributes))
         lines.append(_journey(name, departure))
     lines.append("</routes>\n")
     return "\n".join(lines)
@@ -147,43 +143,13 @@ def _draw_type(weights: Mapping[str, float], generator: np.random.Generator) -> 
     return str(generator.choice(list(weights), p=shares / shares.sum()))
 
 
-def _type_attributes(
-    name: str, vehicle_type: VehicleType, generator: np.random.Generator
-) -> dict[str, str]:
-    def draw(span: Range) -> str:
-        return f"{generator.uniform(*span):.3f}"
-
-    red, green, blue = random_colours(generator, 1)[0]
-    return {
-        "id": name,
-        "vClass": vehicle_type.vehicle_class,
-        "length": draw(vehicle_type.length),
-        "width": draw(vehicle_type.width),
-        "height": draw(vehicle_type.height),
-        "maxSpeed": draw(vehicle_type.max_speed),
-        "speedFactor": draw(vehicle_type.speed_factor),
-        "speedDev": "0",
-        "color": f"{red},{green},{blue}",
-        **{key: _text(value) for key, value in vehicle_type.sumo.items()},
-    }
-
-
 def _journey(name: str, departure: Departure) -> str:
     head = {"id": name, "type": name, "depart": f"{departure.time:.2f}"}
     first, *between, last = (departure.roads[0], *departure.roads[1:-1], departure.roads[-1])
     if departure.inside:
         where = {"departPos": "random_free", "departLane": "random", "departSpeed": "0"}
-        route = _element("route", {"edges": " ".join(departure.roads)}).strip()
-        return _element("vehicle", head | where).replace("/>", f">{route}</vehicle>")
+        route = element("route", {"edges": " ".join(departure.roads)}).strip()
+        return element("vehicle", head | where).replace("/>", f">{route}</vehicle>")
     where = {"departLane": "best", "departSpeed": "max", "from": first, "to": last}
     via = {"via": " ".join(between)} if between else {}
-    return _element("trip", head | where | via)
-
-
-def _element(tag: str, attributes: Mapping[str, str]) -> str:
-    written = " ".join(f"{key}={quoteattr(value)}" for key, value in attributes.items())
-    return f"    <{tag} {written}/>"
-
-
-def _text(value: str | float) -> str:
-    return str(value).lower() if isinstance(value, bool) else str(value)
+    return element("trip", head | where | via)

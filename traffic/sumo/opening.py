@@ -7,10 +7,12 @@ import numpy as np
 
 from traffic.errors import SimulatorError
 from traffic.scenarios.model import Scenario
+from traffic.sumo.acts.director import beginnings
 from traffic.sumo.configuration import read_options, relocate, write_configuration
 from traffic.sumo.demand import departures, route_document
 from traffic.sumo.simulator import SumoSettings, SumoSimulation
 from traffic.sumo.topology import read_topology
+from traffic.sumo.vehicle_types import base_types_document, text_of
 
 __all__ = ["network_of", "open_simulation", "prepare"]
 
@@ -30,7 +32,7 @@ def open_simulation(
     Raises:
         SimulatorError: A file is missing or broken, or SUMO refuses to start.
     """
-    demand, running, painting = generator.spawn(3)
+    demand, running, painting, acting = generator.spawn(4)
     configuration = prepare(scenario, folder, demand, seed=int(running.integers(2**31 - 1)))
     settings = SumoSettings(
         configuration=configuration,
@@ -38,6 +40,8 @@ def open_simulation(
         step_length=scenario.step_length,
         duration=scenario.duration,
         warm_up=scenario.warm_up,
+        vehicle_types=scenario.vehicle_types,
+        acts=beginnings(scenario, acting),
     )
     return SumoSimulation(settings, painting)
 
@@ -53,7 +57,9 @@ def prepare(scenario: Scenario, folder: Path, generator: np.random.Generator, se
         if scenario.sumocfg is None
         else _options_of_configuration(scenario.sumocfg, folder)
     )
-    further = {name: _text(value) for name, value in scenario.sumo.items()}
+    if scenario.acts:
+        options = _with_base_types(options, scenario, folder)
+    further = {name: text_of(value) for name, value in scenario.sumo.items()}
     path = folder / "simulation.sumocfg"
     write_configuration({**options, **further, "seed": str(seed)}, path)
     return path
@@ -93,5 +99,11 @@ def _options_of_configuration(configuration: Path, folder: Path) -> dict[str, st
     return {**smooth, **_GENTLE, **moved}
 
 
-def _text(value: str | float) -> str:
-    return str(value).lower() if isinstance(value, bool) else str(value)
+def _with_base_types(
+    options: Mapping[str, str], scenario: Scenario, folder: Path
+) -> dict[str, str]:
+    """Return *options* with the types of the vehicles that acts bring in."""
+    path = folder / "types.add.xml"
+    path.write_text(base_types_document(scenario.vehicle_types), encoding="utf-8")
+    others = options.get("additional-files", "")
+    return {**options, "additional-files": f"{others},{path.name}" if others else path.name}

@@ -16,6 +16,9 @@ import numpy.typing as npt
 from dyknow.streams.table import Table
 from dyknow.time import SECOND, Duration, TimePoint, text_from_duration
 from traffic.errors import SimulatorError
+from traffic.scenarios.model import VehicleType
+from traffic.sumo.acts.director import Beginning, Director
+from traffic.sumo.acts.stage import Stage
 from traffic.sumo.bodies import Bodies
 from traffic.sumo.colours import random_colours
 from traffic.sumo.libraries import load_simulator
@@ -38,6 +41,8 @@ class SumoSettings:
         step_length: Simulated time between two frames.
         duration: When the last frame is due, from time 0.
         warm_up: How long SUMO runs before time 0.
+        vehicle_types: Of vehicles that come in with acts; SUMO has been given their base types.
+        acts: When which acts begin.
     """
 
     configuration: Path
@@ -45,6 +50,8 @@ class SumoSettings:
     step_length: Duration
     duration: Duration
     warm_up: Duration
+    vehicle_types: Sequence[VehicleType] = ()
+    acts: Sequence[Beginning] = ()
 
 
 class SumoSimulation:
@@ -68,6 +75,9 @@ class SumoSimulation:
         self._libsumo = load_simulator()
         self._faults = (self._libsumo.TraCIException, self._libsumo.FatalTraCIError)
         self._vehicles = _Vehicles(self._libsumo, colours)
+        self._director = Director(settings.acts)
+        step_length = settings.step_length / SECOND
+        self._stage = Stage(self._libsumo, settings.vehicle_types, step_length)
         self._n_steps = 0
         self._call("SUMO cannot start", self._start)
 
@@ -103,6 +113,7 @@ class SumoSimulation:
         """End SUMO, which then completes its files."""
         if self._output is None:
             return
+        self._stage.end()
         try:
             with self._output.capture():
                 self._libsumo.close()
@@ -124,11 +135,18 @@ class SumoSimulation:
         self._libsumo.start(
             ["sumo", "-c", str(settings.configuration), "--step-length", step, "--no-step-log"]
         )
-        for _ in range(settings.warm_up // settings.step_length):
-            self._libsumo.simulationStep()
+        n_before = settings.warm_up // settings.step_length
+        for i in range(-n_before, 0):
+            self._step_to(TimePoint(i * settings.step_length))
+
+    def _step_to(self, time: TimePoint) -> None:
+        """Let SUMO make the frame of *time*, after the acts have had their say."""
+        if self._settings.acts:
+            self._director.step(self._stage, time / SECOND)
+        self._libsumo.simulationStep()
 
     def _advance(self) -> Frame:
-        self._libsumo.simulationStep()
+        self._step_to(self.time)
         return self._vehicles.read(self.time)
 
     def _call(self, doing: str, function: Any) -> Any:
@@ -143,6 +161,9 @@ class SumoSimulation:
             self._abandon()
             said = [line.strip() for line in dict.fromkeys(detail) if line.strip()]
             raise SimulatorError(doing, said) from error
+        except SimulatorError:  # of an act
+            self._abandon()
+            raise
 
     def _abandon(self) -> None:
         try:

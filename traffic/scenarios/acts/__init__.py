@@ -1,0 +1,28 @@
+"""Acts: what drivers do on purpose, so that there is something to recognise.
+
+Read in this order: `base` (what all acts have in common), then the families: `driving` (at a
+speed; halting). A new kind is a class in its family's module and a line in `ACTS` and `AnyAct`
+here, and a performance in `traffic.sumo.acts`.
+"""
+
+from collections.abc import Mapping
+from typing import Annotated
+
+from pydantic import Field
+
+from traffic.scenarios.acts.base import Act
+from traffic.scenarios.acts.driving import Drive, Halt
+
+__all__ = ["ACTS", "Act", "AnyAct"]
+
+AnyAct = Annotated[
+    Drive | Halt,
+    Field(discriminator="kind"),
+]
+"""One of the acts, told apart by its `kind`."""
+
+ACTS: Mapping[str, type[Act]] = {
+    "drive": Drive,
+    "halt": Halt,
+}
+"""The class of each kind."""

@@ -1,0 +1,7 @@
+"""Acts performed in SUMO: drivers who do on purpose what a scenario says.
+
+Read in this order: `performance` (one act done once, step by step), `stage` (the simulator as
+performances see it), `native_driver` (in SUMO's hands), `paths` (smooth curves), `path_driver`
+(along a curve, in place of SUMO), `drawing` (what is random), then the families: `driving`;
+`registry` (which performance belongs to which act), `director` (when each begins).
+"""

@@ -1,0 +1,34 @@
+"""Which performance belongs to which act."""
+
+from collections.abc import Callable, Mapping
+from functools import partial
+from typing import Any
+
+import numpy as np
+
+from traffic.scenarios.acts import Act
+from traffic.scenarios.acts.driving import Drive, Halt
+from traffic.sumo.acts.driving import drive, halt
+from traffic.sumo.acts.performance import Performance, Script
+from traffic.sumo.acts.stage import Stage
+
+__all__ = ["Perform", "performance_of"]
+
+Perform = Callable[[Any, Stage, np.random.Generator], Performance]
+"""Makes a performance of an act on a stage; draws from the generator all that is random in it."""
+
+
+def performance_of(act: Act, stage: Stage, generator: np.random.Generator) -> Performance:
+    """Return a performance of *act* that is about to begin."""
+    return _PERFORM[type(act)](act, stage, generator)
+
+
+def _script(play: Callable[..., Any]) -> Perform:
+    """Return what performs *play*, a function with `yield` at each step."""
+    return lambda act, stage, generator: Script(partial(play, act, stage, generator))
+
+
+_PERFORM: Mapping[type[Act], Perform] = {
+    Drive: _script(drive),
+    Halt: _script(halt),
+}
