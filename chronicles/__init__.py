@@ -1,16 +1,22 @@
 """Complex events recognised from simple ones.
 
-Read in this order: `syntax` (what a chronicle says), `recovery`, `parser` and `printer` (text to
-chronicle and back), `constraints` (simple temporal networks), `conditions` (on values),
-`expansion` (what is named or included, put in), `timing` (when instants can be), `check` (every
-fault of a file), `events` (what goes in and comes out), `semantics` (what chronicles mean),
-`patterns` and `models` (chronicles prepared for recognition), `boundedness` (what may be awaited
-without end),
-`instances` (partial instances and how they are found), `counting`, `matching` (which instances
-begin, go on, complete, or die), `joining` (how an event joins them), `reporting` (which matches
-are reported), `prospects` (partial instances as people see them), `recognition` (the
-recogniser), `processes` (the recogniser on streams), `recognised` (what it recognises as events
-for others); `errors`.
+Read in this order:
+
+- `syntax`: what a chronicle says; `parser` and `printer`: text to chronicle and back; `recovery`,
+  `wording`, `intervals` and `arrangements`: what the parser needs
+- `constraints`: simple temporal networks; `conditions`: on values; `expansion`: what is named or
+  included, put in; `timing`: when instants can be
+- `declared`: what a file declares; `naming`, `circles`, `event_types`, `uses`, `bindings`: what
+  can be wrong; `check`: every fault of a file
+- `events`: what goes in and comes out; `semantics`: what chronicles mean
+- `patterns` and `models`: chronicles prepared for recognition; `boundedness`: what may be awaited
+  without end
+- `instances`: partial instances and how they are found; `counting`; `matching`: which instances
+  begin, go on, complete, or die; `joining`: how an event joins them; `reporting`: which matches
+  are reported; `prospects`: partial instances as people see them
+- `recognition`: the recogniser; `processes`: the recogniser on streams; `recognised`: what it
+  recognises as events for others
+- `errors`
 """
 
 from chronicles.events import Event, Recognition

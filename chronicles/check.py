@@ -1,32 +1,20 @@
 """Every fault of a chronicle file that can be found without running it."""
 
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Iterator, Sequence
 
-from chronicles.conditions import (
-    contradictory_conditions,
-    holds,
-    members_of,
-    parts_of,
-    references_of,
-    variables_in,
-)
-from chronicles.constraints import bounds_of
-from chronicles.errors import (
-    ChronicleError,
-    InconsistentConstraintsError,
-    RecursionInChroniclesError,
-    UnboundInstantError,
-    UnboundVariableError,
-    ValueOutsideDomainError,
-)
-from chronicles.expansion import (
-    END,
-    START,
-    Expansion,
-    expand,
-    instants_of,
-    statements_used,
+from chronicles.bindings import faults_of_stars, faults_of_variables
+from chronicles.circles import circles, faults_of_domains
+from chronicles.conditions import contradictory_conditions
+from chronicles.declared import Declared
+from chronicles.errors import ChronicleError, InconsistentConstraintsError, UnboundInstantError
+from chronicles.event_types import faults_of_event_type
+from chronicles.expansion import Expansion, expand, instants_of
+from chronicles.naming import (
+    faults_of_condition,
+    faults_of_domain,
+    faults_of_domains_in,
+    faults_of_names,
+    faults_of_parameters,
 )
 from chronicles.printer import text_of
 from chronicles.syntax import (
@@ -35,40 +23,22 @@ from chronicles.syntax import (
     Chronicle,
     ChronicleFile,
     Condition,
-    ConstraintDeclaration,
-    Domain,
-    DomainDeclaration,
     EventAt,
-    EventType,
     Inclusion,
-    Membership,
     MessageDeclaration,
     NamedConstraint,
     NoEvent,
     Occurs,
-    Parameter,
     ReportAll,
     ReportNonOverlapping,
-    Star,
     Statement,
     TemporalConstraint,
-    Value,
-    Variable,
     VariableDeclaration,
-    names_in,
-    stars_of,
-    variables_of,
 )
 from chronicles.timing import Timing, timing_of
-from dyknow.errors import (
-    ArityError,
-    CircularDefinitionError,
-    DuplicateNameError,
-    SpecificationError,
-    SpecificationErrors,
-    UnknownNameError,
-)
-from dyknow.source_text import Span, nearest_name
+from chronicles.uses import faults_of_comparison, faults_of_constraint, faults_of_use
+from dyknow.errors import SpecificationError, SpecificationErrors
+from dyknow.source_text import nearest_name
 
 __all__ = ["check", "faults"]
 
@@ -86,17 +56,17 @@ def check(file: ChronicleFile) -> None:
 
 def faults(file: ChronicleFile) -> list[SpecificationError]:
     """Return every fault of *file*, in reading order."""
-    declared = _Declared.of(file)
+    declared = Declared.of(file)
     found = [
-        *_faults_of_names("domain", file.domains),
-        *_faults_of_names("constraint", file.constraints),
-        *_faults_of_names("attribute or message", file.signals),
-        *_faults_of_names("chronicle", file.chronicles),
-        *_faults_of_domains(file.domains),
-        *_circles(file),
+        *faults_of_names("domain", file.domains),
+        *faults_of_names("constraint", file.constraints),
+        *faults_of_names("attribute or message", file.signals),
+        *faults_of_names("chronicle", file.chronicles),
+        *faults_of_domains(file.domains),
+        *circles(file),
     ]
     for constraint in file.constraints:
-        found.extend(_faults_of_constraint(constraint, declared))
+        found.extend(faults_of_constraint(constraint, declared))
     for signal in file.signals:
         found.extend(_faults_of_signal(signal, declared))
     for chronicle in file.chronicles:
@@ -104,256 +74,19 @@ def faults(file: ChronicleFile) -> list[SpecificationError]:
     return sorted(found, key=lambda fault: (fault.span.start, fault.span.end))
 
 
-Named = Chronicle | ConstraintDeclaration | AttributeDeclaration | MessageDeclaration
-Signal = AttributeDeclaration | MessageDeclaration | Chronicle
-
-
-@dataclass(frozen=True)
-class _Declared:
-    """What a file declares, by name."""
-
-    domains: Mapping[str, Domain]
-    constraints: Mapping[str, ConstraintDeclaration]
-    signals: Mapping[str, AttributeDeclaration | MessageDeclaration]
-    chronicles: Mapping[str, Chronicle]
-
-    @staticmethod
-    def of(file: ChronicleFile) -> "_Declared":
-        return _Declared(
-            _whole_domains(file.domains),
-            {declaration.name: declaration for declaration in reversed(file.constraints)},
-            {declaration.name: declaration for declaration in file.signals},
-            {chronicle.name: chronicle for chronicle in reversed(file.chronicles)},
-        )
-
-    def allowed(self, signal: Signal, parameter: str) -> Callable[[str], bool]:
-        """Return what tells whether a value may stand for *parameter* in *signal*."""
-        conditions = [
-            condition
-            for condition in getattr(signal, "conditions", ())
-            if {variable.name for variable in variables_in(condition)} == {parameter}
-            and self.knows_domains_of(condition)
-        ]
-        return lambda value: all(
-            holds(condition, {parameter: value}, self.domains) for condition in conditions
-        )
-
-    def listed(self, signal: Signal, parameter: str) -> Iterator[str]:
-        """Yield the values that are written down for *parameter* in *signal*."""
-        for condition in getattr(signal, "conditions", ()):
-            names = [variable.name for variable in variables_in(condition)]
-            is_membership = isinstance(condition, Membership) and names == [parameter]
-            if is_membership and self.knows_domains_of(condition):
-                yield from sorted(members_of(condition.domain, self.domains).values)
-
-    def knows_domains_of(self, condition: Condition) -> bool:
-        """Return whether every domain in *condition* is known."""
-        parts = [part for part in parts_of(condition) if isinstance(part, Membership)]
-        names = [ref.name for part in parts for ref in references_of(part.domain)]
-        return all(name in self.domains for name in names)
-
-
-def _whole_domains(declarations: Sequence[DomainDeclaration]) -> dict[str, Domain]:
-    """Return the domains that can be worked out, by name: no circle, no unknown name."""
-    waiting = {declaration.name: declaration.domain for declaration in declarations}
-    whole: dict[str, Domain] = {}
-    while True:
-        ready = [n for n, d in waiting.items() if all(r.name in whole for r in references_of(d))]
-        if not ready:
-            return whole
-        for name in ready:
-            whole[name] = waiting.pop(name)
-
-
-def _faults_of_domains(declarations: Sequence[DomainDeclaration]) -> Iterator[SpecificationError]:
-    names = [declaration.name for declaration in declarations]
-    for declaration in declarations:
-        for reference in references_of(declaration.domain):
-            if reference.name not in names:
-                nearest = nearest_name(reference.name, names)
-                yield UnknownNameError("domain", reference.name, reference.span, nearest)
-    used = {d.name: [r.name for r in references_of(d.domain)] for d in declarations}
-    for declaration in declarations:
-        circle = _circle(declaration.name, used)
-        if circle and declaration.name == min(circle):
-            yield CircularDefinitionError(circle, declaration.span)
-
-
-def _circle(name: str, used: Mapping[str, Sequence[str]]) -> list[str]:
-    """Return the shortest way from *name* to itself; empty if there is none."""
-    ways = [[name]]
-    seen: set[str] = set()
-    for way in ways:
-        for following in used.get(way[-1], ()):
-            if following == name:
-                return [*way, name]
-            if following not in seen:
-                seen.add(following)
-                ways.append([*way, following])
-    return []
-
-
-def _circles(file: ChronicleFile) -> Iterator[SpecificationError]:
-    """Yield the chronicles and constraints that are made of themselves."""
-    chronicles = {chronicle.name for chronicle in file.chronicles}
-    signals = {signal.name for signal in file.signals}
-    used: dict[str, list[str]] = {}
-    for chronicle in file.chronicles:
-        names = [u.name for u in statements_used(chronicle) if isinstance(u, Inclusion)]
-        types = [_event_type(statement) for statement in chronicle.statements]
-        events = {t.name for t in types if t is not None} - signals
-        used.setdefault(chronicle.name, [*names, *sorted(events & chronicles)])
-    for chronicle in file.chronicles:
-        circle = _circle(chronicle.name, used)
-        if circle and chronicle.name == min(circle):
-            yield RecursionInChroniclesError(circle, chronicle.span)
-    used = {c.name: [u.name for u in statements_used(c)] for c in file.constraints}
-    for constraint in file.constraints:
-        circle = _circle(constraint.name, used)
-        if circle and constraint.name == min(circle):
-            yield RecursionInChroniclesError(circle, constraint.span)
-
-
-def _event_type(statement: object) -> EventType | None:
-    return statement.event_type if isinstance(statement, EventAt | NoEvent | Occurs) else None
-
-
-def _faults_of_names(
-    kind: str, declarations: Iterable[DomainDeclaration | Named]
-) -> Iterator[SpecificationError]:
-    first: dict[str, Span] = {}
-    for declaration in declarations:
-        name, span = declaration.name, declaration.span
-        if name in first:
-            yield DuplicateNameError(kind, name, span, first[name])
-        first.setdefault(name, span)
-
-
-def _faults_of_parameters(node: Named) -> Iterator[SpecificationError]:
-    first: dict[str, Span] = {}
-    for parameter in node.parameters:
-        if parameter.name in first:
-            yield DuplicateNameError(
-                "parameter", parameter.name, parameter.span, first[parameter.name]
-            )
-        elif parameter.name == VALUE_VARIABLE:
-            yield _reserved_value(parameter)
-        first.setdefault(parameter.name, parameter.span)
-
-
-def _reserved_value(variable: Variable | Star) -> ChronicleError:
-    message = f"'{VALUE_VARIABLE}' stands for the value of an attribute and is no parameter"
-    return ChronicleError(message, variable.span)
-
-
-def _faults_of_domain(domain: Domain, declared: _Declared) -> Iterator[SpecificationError]:
-    for reference in references_of(domain):
-        if reference.name not in declared.domains:
-            nearest = nearest_name(reference.name, declared.domains)
-            yield UnknownNameError("domain", reference.name, reference.span, nearest)
-
-
-def _faults_of_condition(
-    condition: Condition, known: Sequence[str], declared: _Declared
-) -> Iterator[SpecificationError]:
-    for variable in variables_in(condition):
-        if variable.name not in known:
-            nearest = nearest_name(variable.name, known)
-            yield UnknownNameError("parameter", variable.name, variable.span, nearest)
-    yield from _faults_of_domains_in(condition, declared)
-
-
-def _faults_of_domains_in(
-    condition: Condition, declared: _Declared
-) -> Iterator[SpecificationError]:
-    for part in parts_of(condition):
-        if isinstance(part, Membership):
-            yield from _faults_of_domain(part.domain, declared)
-
-
 def _faults_of_signal(
-    signal: AttributeDeclaration | MessageDeclaration, declared: _Declared
+    signal: AttributeDeclaration | MessageDeclaration, declared: Declared
 ) -> Iterator[SpecificationError]:
-    yield from _faults_of_parameters(signal)
+    yield from faults_of_parameters(signal)
     known = [parameter.name for parameter in signal.parameters]
     if isinstance(signal, AttributeDeclaration):
         known.append(VALUE_VARIABLE)
     for condition in signal.conditions:
-        yield from _faults_of_condition(condition, known, declared)
-
-
-def _faults_of_constraint(
-    constraint: ConstraintDeclaration, declared: _Declared
-) -> Iterator[SpecificationError]:
-    yield from _faults_of_parameters(constraint)
-    yield from _duplicates_among("instant", constraint.instants, constraint.span)
-    variables = [parameter.name for parameter in constraint.parameters]
-    for statement in constraint.statements:
-        for name in dict.fromkeys(instants_of(statement)):
-            if name not in constraint.instants:
-                nearest = nearest_name(name, constraint.instants)
-                yield UnknownNameError("instant", name, statement.span, nearest)
-        match statement:
-            case NamedConstraint():
-                yield from _faults_of_use(statement, declared)
-            case _ if isinstance(statement, TemporalConstraint):
-                yield from _faults_of_comparison(statement)
-            case _ if isinstance(statement, Condition):
-                yield from _faults_of_condition(statement, variables, declared)
-            case _:
-                pass
-
-
-def _duplicates_among(kind: str, names: Sequence[str], span: Span) -> Iterator[SpecificationError]:
-    for name in dict.fromkeys(name for name in names if names.count(name) > 1):
-        yield DuplicateNameError(kind, name, span, span)
-
-
-def _faults_of_comparison(constraint: TemporalConstraint) -> Iterator[SpecificationError]:
-    try:
-        bounds_of(constraint)
-    except ValueError as error:
-        yield ChronicleError(f"{error}, found '{text_of(constraint)}'", constraint.span)
-
-
-def _faults_of_use(
-    use: NamedConstraint | Inclusion, declared: _Declared
-) -> Iterator[SpecificationError]:
-    is_inclusion = isinstance(use, Inclusion)
-    known = declared.chronicles if is_inclusion else declared.constraints
-    named: Chronicle | ConstraintDeclaration | None = known.get(use.name)
-    if named is None:
-        kind = "chronicle" if is_inclusion else "constraint"
-        yield UnknownNameError(kind, use.name, use.span, nearest_name(use.name, known))
-        return
-    if len(use.parameters) != len(named.parameters):
-        yield ArityError(use.name, len(named.parameters), len(use.parameters), use.span)
-    if isinstance(use, Inclusion):
-        assert isinstance(named, Chronicle)
-        yield from _faults_of_bindings(use, named)
-    elif len(use.instants) != len(named.instants):
-        yield ArityError(use.name, len(named.instants), len(use.instants), use.span)
-
-
-def _faults_of_bindings(use: Inclusion, included: Chronicle) -> Iterator[SpecificationError]:
-    labels = [binding.label for binding in use.bindings]
-    n_by_place = sum(label is None for label in labels)
-    if any(label is None for label in labels[n_by_place:]):
-        message = "expected instants without a name before those with one"
-        yield ChronicleError(message, use.span)
-    if n_by_place > len(included.instants):
-        yield ArityError(use.name, len(included.instants), n_by_place, use.span)
-    inside = {name for statement in included.statements for name in instants_of(statement)}
-    known = [*dict.fromkeys([*included.instants, *sorted(inside), START, END])]
-    names = [*included.instants[:n_by_place], *(label for label in labels if label)]
-    for name in dict.fromkeys(names):
-        if name not in known:
-            yield UnknownNameError("instant", name, use.span, nearest_name(name, known))
-    yield from _duplicates_among("instant", names, use.span)
+        yield from faults_of_condition(condition, known, declared)
 
 
 def _faults_of_chronicle(
-    chronicle: Chronicle, file: ChronicleFile, declared: _Declared
+    chronicle: Chronicle, file: ChronicleFile, declared: Declared
 ) -> Iterator[SpecificationError]:
     yield from _faults_of_statements(chronicle, declared)
     expansion = expand(chronicle, file)
@@ -362,15 +95,15 @@ def _faults_of_chronicle(
             message = f"chronicle '{chronicle.name}' has no event"
             yield ChronicleError(message, chronicle.span)
         return
-    yield from _faults_of_parameters(chronicle)
-    yield from _faults_of_variables(chronicle, expansion)
-    yield from _faults_of_stars(expansion)
+    yield from faults_of_parameters(chronicle)
+    yield from faults_of_variables(chronicle, expansion)
+    yield from faults_of_stars(expansion)
     yield from _faults_of_time(chronicle, expansion)
     yield from _faults_of_values_together(chronicle, expansion, declared)
 
 
 def _faults_of_statements(
-    chronicle: Chronicle, declared: _Declared
+    chronicle: Chronicle, declared: Declared
 ) -> Iterator[SpecificationError]:
     for statement in chronicle.statements:
         yield from _faults_of_statement(statement, declared)
@@ -379,123 +112,25 @@ def _faults_of_statements(
         yield ChronicleError("expected at most one 'report' statement", report.span)
 
 
-def _faults_of_statement(
-    statement: Statement, declared: _Declared
-) -> Iterator[SpecificationError]:
+def _faults_of_statement(statement: Statement, declared: Declared) -> Iterator[SpecificationError]:
     if isinstance(statement, TemporalConstraint):
-        yield from _faults_of_comparison(statement)
+        yield from faults_of_comparison(statement)
     if isinstance(statement, Condition):
-        yield from _faults_of_domains_in(statement, declared)
+        yield from faults_of_domains_in(statement, declared)
     match statement:
         case EventAt(_, event_type, _, _) | NoEvent(_, event_type, _, _):
-            yield from _faults_of_event_type(event_type, declared)
+            yield from faults_of_event_type(event_type, declared)
         case Occurs(_, least, most, event_type, _, _):
-            yield from _faults_of_event_type(event_type, declared)
+            yield from faults_of_event_type(event_type, declared)
             if most is not None and least > most:
                 message = f"expected at least {least} as the largest number, found {most}"
                 yield ChronicleError(message, statement.span)
         case Inclusion() | NamedConstraint():
-            yield from _faults_of_use(statement, declared)
+            yield from faults_of_use(statement, declared)
         case VariableDeclaration(_, _, domain) if domain is not None:
-            yield from _faults_of_domain(domain, declared)
+            yield from faults_of_domain(domain, declared)
         case _:
             pass
-
-
-def _faults_of_variables(
-    chronicle: Chronicle, expansion: Expansion
-) -> Iterator[SpecificationError]:
-    bound = {v.name for event in expansion.events for v in variables_of(event.event_type)}
-    used: list[Variable | Star] = list(chronicle.parameters)
-    for statement in chronicle.statements:
-        if isinstance(statement, VariableDeclaration):
-            used.extend(statement.variables)
-    for statement in expansion.statements:
-        used.extend(_variables_used_by(statement))
-    told: set[Span] = set()
-    for variable in used:
-        is_ours = isinstance(variable, Variable) and "." not in variable.name
-        if variable.name == VALUE_VARIABLE:
-            yield _reserved_value(variable)
-        elif is_ours and variable.name not in bound and variable.span not in told:
-            told.add(variable.span)
-            nearest = nearest_name(variable.name, [name for name in bound if "." not in name])
-            yield UnboundVariableError(variable.name, variable.span, nearest)
-
-
-def _variables_used_by(statement: object) -> Iterator[Variable | Star]:
-    match statement:
-        case NoEvent(_, event_type, _, _) | Occurs(_, _, _, event_type, _, _):
-            yield from variables_of(event_type)
-        case EventAt(_, event_type, _, _):
-            yield from (v for v in variables_of(event_type) if v.name == VALUE_VARIABLE)
-        case _ if isinstance(statement, Condition):
-            yield from variables_in(statement)
-        case _:
-            pass
-
-
-def _faults_of_stars(expansion: Expansion) -> Iterator[SpecificationError]:
-    """Yield the conditions on star variables that no event type can be tested for."""
-    types = [t for t in map(_event_type, expansion.statements) if t is not None]
-    groups = [names_in(t) for t in types]
-    starred = {star.name for t in types for star in stars_of(t)}
-    for name, span in expansion.stars.items():
-        if name not in starred and "." not in name:
-            yield ChronicleError(f"no event type uses '{name}'", span)
-    for statement in expansion.statements:
-        if isinstance(statement, Condition):
-            variables = variables_in(statement)
-            names = {variable.name for variable in variables}
-            has_star = any(isinstance(variable, Star) for variable in variables)
-            is_ours = not any("." in name for name in names)
-            if has_star and is_ours and not any(names <= group for group in groups):
-                listed = ", ".join(f"'{name}'" for name in sorted(names))
-                message = f"expected an event type with all of {listed}, found none"
-                yield ChronicleError(message, statement.span)
-
-
-def _faults_of_event_type(
-    event_type: EventType, declared: _Declared
-) -> Iterator[SpecificationError]:
-    signal: Signal | None = declared.signals.get(event_type.name)
-    signal = signal or declared.chronicles.get(event_type.name)
-    if signal is None and not declared.signals:
-        return
-    if signal is None:
-        nearest = nearest_name(event_type.name, [*declared.signals, *declared.chronicles])
-        span = event_type.span
-        span = Span(span.source, span.start, span.start + len(event_type.name))
-        yield UnknownNameError("attribute or message", event_type.name, span, nearest)
-        return
-    n_expected, n_found = len(signal.parameters), len(event_type.arguments)
-    if n_expected != n_found:
-        yield ArityError(event_type.name, n_expected, n_found, event_type.span)
-    yield from _faults_of_kind(signal, event_type)
-    names = [parameter.name for parameter in signal.parameters]
-    for parameter, name in zip(event_type.arguments, names, strict=False):
-        yield from _faults_of_value(parameter, name, signal, declared)
-    if event_type.change and not isinstance(signal, Chronicle):
-        for value in (event_type.change.before, event_type.change.after):
-            yield from _faults_of_value(value, VALUE_VARIABLE, signal, declared)
-
-
-def _faults_of_kind(signal: Signal, event_type: EventType) -> Iterator[SpecificationError]:
-    if isinstance(signal, AttributeDeclaration) and event_type.change is None:
-        message = f"expected ':(from, to)' behind the attribute '{signal.name}'"
-        yield ChronicleError(message, event_type.span)
-    if isinstance(signal, MessageDeclaration) and event_type.change is not None:
-        message = f"'{signal.name}' is a message and has no values ':(from, to)'"
-        yield ChronicleError(message, event_type.change.span)
-
-
-def _faults_of_value(
-    parameter: Parameter, name: str, signal: Signal, declared: _Declared
-) -> Iterator[SpecificationError]:
-    if isinstance(parameter, Value) and not declared.allowed(signal, name)(parameter.text):
-        nearest = nearest_name(parameter.text, declared.listed(signal, name))
-        place = f"'{name}' of '{signal.name}'"
-        yield ValueOutsideDomainError(parameter.text, place, parameter.span, nearest)
 
 
 def _faults_of_time(chronicle: Chronicle, expansion: Expansion) -> Iterator[SpecificationError]:
@@ -540,7 +175,7 @@ def _is_time_of_event(expansion: Expansion, name: str) -> bool:
 
 
 def _faults_of_values_together(
-    chronicle: Chronicle, expansion: Expansion, declared: _Declared
+    chronicle: Chronicle, expansion: Expansion, declared: Declared
 ) -> Iterator[SpecificationError]:
     conditions = [
         statement

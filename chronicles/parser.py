@@ -1,7 +1,7 @@
 """From the text of a chronicle file to its syntax tree."""
 
 import re
-from collections.abc import Callable, Collection, Sequence
+from collections.abc import Callable
 from functools import cache
 from pathlib import Path
 from typing import Any
@@ -12,24 +12,17 @@ from lark.exceptions import UnexpectedCharacters, UnexpectedEOF, UnexpectedInput
 from lark.tree import Meta
 
 from chronicles import syntax
+from chronicles.arrangements import ARRANGEMENTS, plain
 from chronicles.errors import ChronicleSyntaxError
+from chronicles.intervals import intersection_of, is_empty, negated, sum_of, union_of
 from chronicles.recovery import MAX_DEPTH, Outline
-from chronicles.syntax import ChronicleFile, Displaced, Interval
+from chronicles.syntax import ChronicleFile, Interval
+from chronicles.wording import RESERVED_WORDS, alternatives, described, listed
 from dyknow.errors import SpecificationError, SpecificationErrors
 from dyknow.source_text import SourceText, Span, nearest_name
 from dyknow.time import MILLISECOND, Duration, duration_from_text
 
-__all__ = ["RESERVED_WORDS", "parse_chronicles", "read_chronicles"]
-
-RESERVED_WORDS = frozenset(
-    (
-        *("alias", "and", "attribute", "chronicle", "constraint", "delay", "domain", "else"),
-        *("end", "event", "hold", "if", "in", "init", "instant", "message", "noevent", "not"),
-        *("occurs", "oo", "or", "recognized", "report", "send", "start", "then", "variable"),
-        "when",
-    )
-)
-"""Words that cannot be names; those without a use yet are kept free for the whole of C.R.S."""
+__all__ = ["parse_chronicles", "read_chronicles"]
 
 _TERMINALS = rf"""
 NAME: /(?!(?:{"|".join(sorted(RESERVED_WORDS))})\b)[A-Za-z_]\w*/
@@ -55,29 +48,6 @@ COMMENT: /(?:#|\/\/)[^\n]*/
 %ignore /\s+/
 """
 
-_EXPECTED = {
-    "NAME": "a name",
-    "VARIABLE": "a variable",
-    "STAR": "a star variable",
-    "DURATION": "a length of time",
-    "INTEGER": "a number",
-    "STRING": "a string",
-    "ORDER": "a comparison",
-    "EQUAL": "'='",
-    "EQUALITY": "'==' or '!='",
-    "_UNION": "'|'",
-    "_DIFFERENCE": "'\\'",
-    "_COMPLEMENT": "'~'",
-    "START": "'start'",
-    "END": "'end'",
-    "PLUS": "'+'",
-    "MINUS": "'-'",
-    "LEFT": "'[' or ']'",
-    "RIGHT": "'[' or ']'",
-    "$END": "the end of the text",
-}
-_ANY_VALUE = {"NAME", "INTEGER", "STRING"}
-_MOST_ALTERNATIVES = 8
 _MOST_FAULTS = 20
 _STARTS = frozenset({"ATTRIBUTE", "DOMAIN"})
 """Terminals that are accepted together only between declarations."""
@@ -215,33 +185,31 @@ class _Pieces(Transformer[Token, Any]):
 
     def interval_negated(self, items: list[Any]) -> Interval:
         _sign, interval = items
-        return _negated(interval)
+        return negated(interval)
 
     def interval_shifted(self, items: list[Any]) -> Interval:
         interval, sign, number = items
         shift = self.signed([sign, number])
-        return _sum(interval, Interval(interval.span, shift, shift))
+        return sum_of(interval, Interval(interval.span, shift, shift))
 
     def interval_sum(self, items: list[Any]) -> Interval:
         left, sign, right = items
-        return _sum(left, _negated(right) if sign == "-" else right)
+        return sum_of(left, negated(right) if sign == "-" else right)
 
     def interval_intersection(self, items: list[Any]) -> Interval:
         left, right = items
-        found = _intersection(left, right)
-        if _is_empty(found):
+        found = intersection_of(left, right)
+        if is_empty(found):
             self.faults.append(ChronicleSyntaxError("these intervals share nothing", left.span))
         return found
 
     def interval_union(self, items: list[Any]) -> Interval:
         left, right = items
-        shared = _intersection(left, right)
-        if _is_empty(shared, by=MILLISECOND):
+        shared = intersection_of(left, right)
+        if is_empty(shared, by=MILLISECOND):
             message = "these intervals leave a gap and have no interval as their union"
             self.faults.append(ChronicleSyntaxError(message, left.span))
-        lowers, uppers = (left.lower, right.lower), (left.upper, right.upper)
-        lower = None if None in lowers else min(lowers)
-        return Interval(left.span, lower, None if None in uppers else max(uppers))
+        return union_of(left, right)
 
     @v_args(meta=True)
     def non_membership(self, meta: Meta, items: list[Any]) -> syntax.Negation:
@@ -266,30 +234,6 @@ class _Pieces(Transformer[Token, Any]):
         return duration
 
 
-def _negated(interval: Interval) -> Interval:
-    lower = None if interval.upper is None else Duration(-interval.upper)
-    upper = None if interval.lower is None else Duration(-interval.lower)
-    return Interval(interval.span, lower, upper)
-
-
-def _sum(left: Interval, right: Interval) -> Interval:
-    def plus(one: Duration | None, other: Duration | None) -> Duration | None:
-        return None if one is None or other is None else Duration(one + other)
-
-    return Interval(left.span, plus(left.lower, right.lower), plus(left.upper, right.upper))
-
-
-def _intersection(left: Interval, right: Interval) -> Interval:
-    lowers = [limit for limit in (left.lower, right.lower) if limit is not None]
-    uppers = [limit for limit in (left.upper, right.upper) if limit is not None]
-    return Interval(left.span, max(lowers, default=None), min(uppers, default=None))
-
-
-def _is_empty(interval: Interval, by: int = 0) -> bool:
-    lower, upper = interval.lower, interval.upper
-    return lower is not None and upper is not None and lower > upper + by
-
-
 def _transformer(source: SourceText, pieces: _Pieces) -> Transformer[Token, Any]:
     transformer: Transformer[Token, Any] = create_transformer(
         syntax, pieces, decorator_factory=lambda **_: v_args(wrapper=_spanned(source))
@@ -300,103 +244,10 @@ def _transformer(source: SourceText, pieces: _Pieces) -> Transformer[Token, Any]
 def _spanned(source: SourceText) -> Callable[..., Any]:
     def make(node: Callable[..., Any], data: str, children: list[Any], meta: Meta) -> Any:
         span = Span(source, 0, 0) if meta.empty else Span(source, meta.start_pos, meta.end_pos)
-        arrange = _ARRANGEMENTS.get(str(data))
-        return node(span, *(arrange(children) if arrange else map(_plain, children)))
+        arrange = ARRANGEMENTS.get(str(data))
+        return node(span, *(arrange(children) if arrange else map(plain, children)))
 
     return make
-
-
-def _plain(child: Any) -> Any:
-    return str(child) if isinstance(child, Token) else child
-
-
-def _interval(children: Sequence[Any]) -> Sequence[Any]:
-    """Turn the brackets of an interval into its closed ends."""
-    left, lower, upper, right = children
-    if lower is not None and left == "]":
-        lower += MILLISECOND
-    if upper is not None and right == "[":
-        upper -= MILLISECOND
-    return lower, upper
-
-
-def _comparison(children: Sequence[Any]) -> Sequence[Any]:
-    """Part a chain into its operands and the orders between them."""
-    return tuple(children[::2]), tuple(str(order) for order in children[1::2])
-
-
-def _values(children: Sequence[Any]) -> Sequence[Any]:
-    return (tuple(child for child in children if child is not None),)
-
-
-def _event_at(children: Sequence[Any]) -> Sequence[Any]:
-    """Turn the moment of an event into its instant and how much later than that it is."""
-    event_type, moment = children
-    if isinstance(moment, Displaced):
-        displacement = moment.interval
-    else:
-        displacement = Interval(moment.span, moment.offset, moment.offset)
-    at_once = displacement.lower == displacement.upper == 0
-    return event_type, moment.name, None if at_once else displacement
-
-
-def _displaced(children: Sequence[Any]) -> Sequence[Any]:
-    name, sign, interval = children
-    return str(name), _negated(interval) if sign == "-" else interval
-
-
-def _length(children: Sequence[Any]) -> Sequence[Any]:
-    first, rest = children
-    return (first + rest,)
-
-
-def _chronicle(children: Sequence[Any]) -> Sequence[Any]:
-    name, parameters, instants, statements = children
-    return str(name), parameters, statements, instants
-
-
-def _named_constraint(children: Sequence[Any]) -> Sequence[Any]:
-    name, *rest = children
-    has_terms = bool(rest) and isinstance(rest[0], tuple)
-    if has_terms:
-        return str(name), rest[0], rest[1]
-    return str(name), (), _values(rest)[0]
-
-
-def _variable_declaration(children: Sequence[Any]) -> Sequence[Any]:
-    variables = tuple(c for c in children if isinstance(c, syntax.Variable | syntax.Star))
-    return variables, next((c for c in children if c is not None and c not in variables), None)
-
-
-def _conditional(children: Sequence[Any]) -> Sequence[Any]:
-    condition, consequence, *alternative = children
-    return condition, consequence, alternative[0] if alternative else None
-
-
-def _instant_binding(children: Sequence[Any]) -> Sequence[Any]:
-    *label, instant = children
-    return str(label[0]) if label and label[0] else None, instant
-
-
-def _names(children: Sequence[Any]) -> Sequence[Any]:
-    return (tuple(map(str, children)),)
-
-
-_ARRANGEMENTS: dict[str, Callable[[Sequence[Any]], Sequence[Any]]] = {
-    "chronicle_file": _values,
-    "interval": _interval,
-    "comparison": _comparison,
-    "value_set": _values,
-    "event_at": _event_at,
-    "displaced": _displaced,
-    "length": _length,
-    "chronicle": _chronicle,
-    "named_constraint": _named_constraint,
-    "variable_declaration": _variable_declaration,
-    "instant_declaration": _names,
-    "conditional": _conditional,
-    "instant_binding": _instant_binding,
-}
 
 
 def _span_of_token(source: SourceText, token: Token) -> Span:
@@ -416,9 +267,9 @@ def _syntax_error(source: SourceText, error: UnexpectedInput) -> ChronicleSyntax
         at_end = Span(source, len(source.text.rstrip()), len(source.text.rstrip()))
         is_end = isinstance(error, UnexpectedEOF) or token.type == "$END"
         span = at_end if is_end else _span_of_token(source, token)
-    expected = _alternatives(_accepted(error))
+    expected = alternatives(_accepted(error), _pattern_by_name())
     found = source.text[span.start : span.end]
-    message = f"expected {_listed(expected)}, found {_described(found)}"
+    message = f"expected {listed(expected)}, found {described(found)}"
     nearest = nearest_name(found, (word.strip("'") for word in expected))
     hint = f"; did you mean '{nearest}'?" if nearest and nearest != found else ""
     return ChronicleSyntaxError(message + hint, span)
@@ -438,30 +289,5 @@ def _word_at(source: SourceText, start: int) -> Span:
     return Span(source, start, end)
 
 
-def _described(found: str) -> str:
-    if not found:
-        return "the end of the text"
-    return f"the reserved word '{found}'" if found in RESERVED_WORDS else f"'{found}'"
-
-
-def _alternatives(terminals: Collection[str]) -> list[str]:
-    """Return how to say what could have come, in order."""
-    pattern_by_name = {terminal.name: terminal.pattern.value for terminal in _grammar().terminals}
-    rest = set(terminals)
-    words = set()
-    if rest >= _ANY_VALUE:
-        rest -= _ANY_VALUE
-        words.add("a value")
-    if "NAME" in rest:
-        rest -= {"START", "END"}
-    if "ORDER" in rest:
-        rest -= {"EQUAL"}
-    words |= {_EXPECTED.get(name) or f"'{pattern_by_name.get(name, name)}'" for name in rest}
-    return sorted(words)
-
-
-def _listed(words: list[str]) -> str:
-    if not words or len(words) > _MOST_ALTERNATIVES:
-        return "a statement" if "'noevent'" in words else "something else"
-    *others, last = words
-    return f"{', '.join(others)} or {last}" if others else last
+def _pattern_by_name() -> dict[str, str]:
+    return {terminal.name: terminal.pattern.value for terminal in _grammar().terminals}

@@ -8,7 +8,6 @@ from collections.abc import Iterable, Iterator
 from functools import singledispatch
 from itertools import pairwise
 
-from chronicles.parser import RESERVED_WORDS
 from chronicles.syntax import (
     Anything,
     AttributeDeclaration,
@@ -56,6 +55,7 @@ from chronicles.syntax import (
     VariableDeclaration,
     Within,
 )
+from chronicles.wording import RESERVED_WORDS
 from dyknow.time import text_from_duration
 
 __all__ = ["print_chronicles", "text_of"]

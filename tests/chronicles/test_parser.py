@@ -6,8 +6,9 @@ from hypothesis import strategies as st
 
 from chronicles import syntax
 from chronicles.errors import ChronicleSyntaxError
-from chronicles.parser import RESERVED_WORDS, parse_chronicles, read_chronicles
+from chronicles.parser import parse_chronicles, read_chronicles
 from chronicles.printer import print_chronicles
+from chronicles.wording import RESERVED_WORDS
 from dyknow.errors import SpecificationErrors
 from dyknow.source_text import MADE_IN_PYTHON
 from dyknow.time import MILLISECOND
