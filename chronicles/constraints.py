@@ -30,6 +30,7 @@ from dyknow.time import MILLISECOND
 
 __all__ = [
     "INSTANT",
+    "NEVER",
     "UNBOUNDED",
     "ZERO",
     "Bound",
@@ -46,6 +47,9 @@ ZERO: Final = "0"
 
 UNBOUNDED: Final = 1 << 60
 """A limit that is none: 36 years in nanoseconds."""
+
+NEVER: Final = 1 << 70
+"""A time after all others; those of events fit into 64 bits."""
 
 
 @dataclass(frozen=True, slots=True)

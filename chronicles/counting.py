@@ -12,6 +12,8 @@ from chronicles.patterns import Values
 
 __all__ = ["CountedEvents"]
 
+_LEAST_TO_SWEEP = 1024
+
 
 class CountedEvents:
     """The times of the events of one counter, by the values of its variables.
@@ -24,6 +26,12 @@ class CountedEvents:
         self._counter = counter
         self._times: dict[Values | str, list[int]] = {}
         self.n_times = 0
+        self._full = _LEAST_TO_SWEEP
+
+    @property
+    def is_full(self) -> bool:
+        """Whether it is time to forget what nothing can ask for any more."""
+        return self.n_times >= self._full
 
     def add(self, key: Values | str, time: int) -> None:
         """Note an event; times come in order."""
@@ -59,3 +67,4 @@ class CountedEvents:
             elif n_old:
                 del times[:n_old]
             self.n_times -= n_old
+        self._full = max(_LEAST_TO_SWEEP, 2 * self.n_times)

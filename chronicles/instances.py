@@ -9,18 +9,12 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from heapq import heapify, heappop, heappush
 
+from chronicles.constraints import NEVER
 from chronicles.events import Event
 from chronicles.models import Counter, Model
 from chronicles.patterns import Values, key_of
 
-__all__ = [
-    "Agenda",
-    "Bucket",
-    "Index",
-    "Instance",
-    "Stage",
-    "Watch",
-]
+__all__ = ["Agenda", "Bucket", "Index", "Instance", "Stage", "Watch"]
 
 
 class Instance:
@@ -31,7 +25,8 @@ class Instance:
         values: Of the variables of the stage.
         times: For each slot the time of its event, 0 while it is open.
         events: For each slot its event.
-        latest: For each slot the latest time at which it can be filled.
+        latest: For each slot the latest time at which it can be filled. Instances share these
+            lists: who limits a slot makes a new one.
         due: When the agenda looks at it; None if it never needs to.
     """
 
@@ -59,6 +54,9 @@ Bucket = dict[Instance, None]
 Index = dict[Values | str, Bucket]
 """Instances by the values of some of their variables."""
 
+_Key = Callable[[Values], Values | str]
+_Change = Callable[[Instance], None]
+
 
 @dataclass(frozen=True, slots=True)
 class Watch:
@@ -73,7 +71,7 @@ class Watch:
 
     counter: Counter
     index: Index
-    key: Callable[[Values], Values | str]
+    key: _Key
     end_known: bool
 
 
@@ -90,19 +88,20 @@ class Stage:
             hold it. An event for another one may already be held by another instance.
         is_complete: Whether no slot is open.
         variables: The variables of the filled slots.
-        review: What decides about an instance that is due at a time.
         watches: The counters whose events matter to these instances.
-        members: The instances.
+        add: Takes in an instance.
+        remove: Forgets an instance and every entry about it.
+        admit: Decides about a new instance; set by whom the stage belongs to.
+        review: Decides about an instance that is due at a time; set likewise.
     """
 
-    def __init__(self, model: Model, mask: int, review: Callable[["Instance", int], None]) -> None:
+    def __init__(self, model: Model, mask: int) -> None:
         slots = model.slots
         near = 0
         for slot in slots:
             if mask & 1 << slot.index:
                 near |= slot.neighbours
         self.mask = mask
-        self.review = review
         self.near = near
         self.filled = tuple(s.index for s in slots if mask & 1 << s.index)
         self.open = tuple(s.index for s in slots if not mask & 1 << s.index)
@@ -110,16 +109,18 @@ class Stage:
         self.is_complete = not self.open
         bound = {name for i in self.filled for name in slots[i].pattern.variables}
         self.variables = tuple(name for name in model.variables if name in bound)
+        self.add: _Change = self._add_first
+        self.remove: _Change = _nothing_to_remove
+        self.admit: Callable[[Instance, int], None]
+        self.review: Callable[[Instance, int], None]
+        self._indexes: dict[tuple[str, ...], tuple[Index, _Key]] = {}
         self.watches = tuple(
-            Watch(c, {}, key_of(self.variables, c.pattern.variables), self.knows(c.end))
-            for c in model.counters
-            if self.knows(c.begin)
-            and bound.issuperset(c.pattern.variables)
-            and (self.is_complete or (c.most is not None and c.end < len(slots)))
+            self._watch(counter)
+            for counter in model.counters
+            if self.knows(counter.begin)
+            and bound.issuperset(counter.pattern.variables)
+            and (self.is_complete or (counter.most is not None and counter.end < len(model.slots)))
         )
-        self.members: Bucket = {}
-        self._indexes: dict[tuple[str, ...], Index] = {}
-        self._entries: list[tuple[Index, Callable[[Values], Values | str]]] = []
 
     def knows(self, place: int) -> bool:
         """Return whether the time at *place*, of a slot or an extreme, is known."""
@@ -130,100 +131,149 @@ class Stage:
 
         It is made when it is first asked for, which must be before the first instance comes.
         """
-        index = self._indexes.get(variables)
-        if index is None:
-            index = self._indexes[variables] = {}
-            self._entries.append((index, key_of(self.variables, variables)))
-        return index
+        if variables not in self._indexes:
+            assert self.remove is _nothing_to_remove
+            self._indexes[variables] = {}, key_of(self.variables, variables)
+        return self._indexes[variables][0]
 
-    def add(self, instance: Instance) -> None:
-        """Take in *instance*."""
-        self.members[instance] = None
-        for index, key in self._entries:
-            _put(index, key(instance.values), instance)
+    def members(self) -> Iterator[Instance]:
+        """Yield the instances."""
+        for index, _ in self._indexes.values():
+            for bucket in index.values():
+                yield from bucket
+            return
 
-    def remove(self, instance: Instance) -> None:
-        """Forget *instance* and every entry about it."""
-        del self.members[instance]
-        for index, key in self._entries:
-            _drop(index, key(instance.values), instance)
-        for watch in self.watches:
-            _drop(watch.index, watch.key(instance.values), instance)
+    def _watch(self, counter: Counter) -> Watch:
+        variables = counter.pattern.variables
+        index = self.index_by(variables)
+        return Watch(counter, index, key_of(self.variables, variables), self.knows(counter.end))
 
-    @staticmethod
-    def watch(watch: Watch, key: Values | str, instance: Instance) -> None:
-        """Let *instance* react to the events of the counter of *watch* that have *key*."""
-        _put(watch.index, key, instance)
+    def _add_first(self, instance: Instance) -> None:
+        """Take in the first instance: from now on there are no more indexes."""
+        if not self._indexes:
+            self.index_by(())
+        entries = tuple(self._indexes.values())
+        self.add, self.remove = _adder(entries), _remover(entries)
+        self.add(instance)
 
 
 class Agenda:
     """The instances in the order in which time alone will decide about them."""
 
     def __init__(self) -> None:
-        self._heap: list[tuple[int, int, Instance]] = []
-        self._n_scheduled = 0
+        self._instances: dict[int, list[Instance]] = {}
+        self._times: list[int] = []
+        self._n_entries = 0
         self._n_stale = 0
 
     def __len__(self) -> int:
-        return len(self._heap)
+        return self._n_entries
+
+    @property
+    def next(self) -> int:
+        """When there may be something to decide: not before the next instance is due."""
+        return self._times[0] if self._times else NEVER
 
     def schedule(self, instance: Instance, due: int) -> None:
         """Look at *instance* when the clock reaches *due*, and not before."""
         if instance.due is not None:
             self._n_stale += 1
         instance.due = due
-        self._n_scheduled += 1
-        heappush(self._heap, (due, self._n_scheduled, instance))
+        self._n_entries += 1
+        instances = self._instances.get(due)
+        if instances is None:
+            self._instances[due] = [instance]
+            heappush(self._times, due)
+        else:
+            instances.append(instance)
 
     def withdraw(self, instance: Instance) -> None:
         """Note that *instance* has died."""
         if instance.due is not None:
             instance.due = None
             self._n_stale += 1
-            if self._n_stale > 64 + len(self._heap) // 2:
+            if self._n_stale > 64 + self._n_entries // 2:
                 self._tidy()
 
     def due(self) -> int | None:
         """Return when the next instance is due, if any is."""
-        heap = self._heap
-        while heap and heap[0][0] != heap[0][2].due:
-            heappop(heap)
-            self._n_stale -= 1
-        return heap[0][0] if heap else None
+        while self._times:
+            due = self._times[0]
+            if any(instance.due == due for instance in self._instances[due]):
+                return due
+            self.take()
+        return None
 
-    def is_due(self, clock: int) -> bool:
-        """Return whether `until` has anything to look at."""
-        return bool(self._heap) and self._heap[0][0] <= clock
-
-    def until(self, clock: int) -> Iterator[tuple[int, Instance]]:
-        """Yield the instances that are due up to *clock*, in order, and when they were."""
-        heap = self._heap
-        while heap and heap[0][0] <= clock:
-            due, _, instance = heappop(heap)
+    def take(self) -> tuple[int, list[Instance]]:
+        """Return the earliest time with the instances that are due at it; they no longer are."""
+        due = heappop(self._times)
+        found = []
+        entries = self._instances.pop(due)
+        for instance in entries:
             if instance.due == due:
                 instance.due = None
-                yield due, instance
-            else:
-                self._n_stale -= 1
+                found.append(instance)
+        self._n_entries -= len(entries)
+        self._n_stale -= len(entries) - len(found)
+        return due, found
 
     def _tidy(self) -> None:
-        self._heap[:] = [entry for entry in self._heap if entry[2].due == entry[0]]
-        heapify(self._heap)
+        """Forget the entries of instances that have died or are due at another time."""
+        kept: dict[int, list[Instance]] = {}
+        for due, entries in self._instances.items():
+            live = list(dict.fromkeys(one for one in entries if one.due == due))
+            if live:
+                kept[due] = live
+        self._instances = kept
+        self._times = list(kept)
+        heapify(self._times)
+        self._n_entries = sum(map(len, kept.values()))
         self._n_stale = 0
 
 
-def _put(index: Index, key: Values | str, instance: Instance) -> None:
-    bucket = index.get(key)
-    if bucket is None:
-        index[key] = {instance: None}
-    else:
-        bucket[instance] = None
+def _nothing_to_remove(instance: Instance) -> None:
+    raise ValueError(f"{instance} is at no stage")
 
 
-def _drop(index: Index, key: Values | str, instance: Instance) -> None:
-    bucket = index.get(key)
-    if bucket is not None and instance in bucket:
-        if len(bucket) == 1:
-            del index[key]
+def _adder(entries: tuple[tuple[Index, _Key], ...]) -> _Change:
+    if len(entries) > 1:
+        adders = [_adder((entry,)) for entry in entries]
+
+        def add_to_all(instance: Instance) -> None:
+            for add in adders:
+                add(instance)
+
+        return add_to_all
+    ((index, key_from),) = entries
+
+    def add(instance: Instance) -> None:
+        key = key_from(instance.values)
+        bucket = index.get(key)
+        if bucket is None:
+            index[key] = {instance: None}
         else:
+            bucket[instance] = None
+
+    return add
+
+
+def _remover(entries: tuple[tuple[Index, _Key], ...]) -> _Change:
+    if len(entries) > 1:
+        removers = [_remover((entry,)) for entry in entries]
+
+        def remove_from_all(instance: Instance) -> None:
+            for remove in removers:
+                remove(instance)
+
+        return remove_from_all
+    ((index, key_from),) = entries
+
+    def remove(instance: Instance) -> None:
+        key = key_from(instance.values)
+        bucket = index[key]
+        if len(bucket) > 1:
             del bucket[instance]
+        else:
+            del index[key]
+
+    return remove

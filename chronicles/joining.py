@@ -11,10 +11,12 @@ For each slot and each combination of stages that an event can join, a *recipe* 
 a function that holds the index to look into, the limits to test, and the places of the values.
 """
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Sequence
+from functools import reduce
 from itertools import product
+from operator import or_
 
-from chronicles.constraints import UNBOUNDED
+from chronicles.constraints import NEVER, UNBOUNDED
 from chronicles.events import Event
 from chronicles.instances import Instance, Stage
 from chronicles.models import Model, Slot
@@ -25,7 +27,7 @@ __all__ = ["Joiner", "Recipe"]
 Recipe = Callable[[Event, int, Values], None]
 """Joins an event with what it fits to, given its time and the values of its slot's variables."""
 
-_Find = Callable[[int, Values], Iterator[Instance]]
+_Find = Callable[[int, Values], Iterable[Instance]]
 
 
 class Joiner:
@@ -37,22 +39,15 @@ class Joiner:
     Args:
         model: The chronicle.
         new_stage: Makes the stage of the slots in a set of bits.
-        admit: Takes in a new instance at a time.
 
     Attributes:
         stages: The stages made so far, by the set of their slots.
         recipes: For each slot what to do with an event.
     """
 
-    def __init__(
-        self,
-        model: Model,
-        new_stage: Callable[[int], Stage],
-        admit: Callable[[Instance, int], None],
-    ) -> None:
+    def __init__(self, model: Model, new_stage: Callable[[int], Stage]) -> None:
         self._model = model
         self._new_stage = new_stage
-        self._admit = admit
         self._combinations: list[list[tuple[Stage, ...]]] = [[()] for _ in model.slots]
         self.stages: dict[int, Stage] = {}
         self.recipes: list[list[Recipe]] = [[] for _ in model.slots]
@@ -94,10 +89,12 @@ class Joiner:
     def _beginning(self, slot: Slot) -> Recipe:
         """Return the recipe for an event that joins nothing."""
         at, n_slots = slot.index, len(self._model.slots)
-        unlimited = [other.latest for other in self._model.slots]
-        reach = self._reach(slot, tuple(range(n_slots)))
+        windows = [NEVER if s.latest >= UNBOUNDED else s.latest for s in self._model.slots]
+        reach = self._reach(slot, ())
+        is_windowed = any(windows[j] < NEVER for j, _ in reach)
         arrange = self._arrangement(slot.pattern.variables, 1 << at)
         allows = self._restriction(1 << at, ())
+        nothing_yet: list[Event | None] = [None] * n_slots
         stage: Stage | None = None
 
         def begin(event: Event, now: int, values: Values) -> None:
@@ -105,16 +102,18 @@ class Joiner:
             arranged = values if arrange is None else arrange(values)
             if allows is not None and not allows(arranged):
                 return
-            latest = unlimited.copy()
+            latest = windows.copy()
             for j, limit in reach:
-                latest[j] = min(latest[j], now + limit)
+                latest[j] = now + limit
+            if is_windowed:
+                latest = list(map(min, latest, windows))
             times = [0] * n_slots
             times[at] = now
-            events: list[Event | None] = [None] * n_slots
+            events = nothing_yet.copy()
             events[at] = event
             if stage is None:
                 stage = self._stage(1 << at)
-            self._admit(Instance(stage, arranged, times, events, latest), now)
+            stage.admit(Instance(stage, arranged, times, events, latest), now)
 
         return begin
 
@@ -123,48 +122,36 @@ class Joiner:
         if len(parts) == 1:
             return self._going_on(slot, parts[0])
         find = [self._finder(slot, part) for part in parts]
-        mask = 1 << slot.index
-        for part in parts:
-            mask |= part.mask
+        at = slot.index
+        mask = reduce(or_, (part.mask for part in parts), 1 << at)
         sources = [*(v for part in parts for v in part.variables), *slot.pattern.variables]
         arrange = self._arrangement(sources, mask)
         allows = self._restriction(mask, parts)
         filled = [part.filled for part in parts]
+        reach = self._reach(slot, ())
 
         def join(event: Event, now: int, values: Values) -> None:
             for instances in product(*[finder(now, values) for finder in find]):
                 if not _fit(instances, filled):
                     continue
-                arranged = tuple([v for one in instances for v in one.values]) + values
-                if arrange is not None:
-                    arranged = arrange(arranged)
+                found = tuple([v for one in instances for v in one.values]) + values
+                arranged = arrange(found) if arrange else found
                 if allows is None or allows(arranged):
-                    joined = self._joined(slot, event, now, instances)
+                    joined = _joined(instances)
+                    joined.times[at], joined.events[at] = now, event
                     joined.stage, joined.values = self._stage(mask), arranged
-                    self._admit(joined, now)
+                    for j, limit in reach:
+                        joined.latest[j] = min(joined.latest[j], now + limit)
+                    joined.stage.admit(joined, now)
 
         return join
-
-    def _joined(
-        self, slot: Slot, event: Event, now: int, instances: tuple[Instance, ...]
-    ) -> Instance:
-        first, *others = instances
-        latest = [min(now + d, UNBOUNDED) for d in self._model.limits[slot.index]]
-        latest = list(map(min, latest, first.latest))
-        times, events = first.times.copy(), first.events.copy()
-        for other in others:
-            latest = list(map(min, latest, other.latest))
-            for i in other.stage.filled:
-                times[i], events[i] = other.times[i], other.events[i]
-        times[slot.index], events[slot.index] = now, event
-        return Instance(first.stage, first.values, times, events, latest)
 
     def _going_on(self, slot: Slot, part: Stage) -> Recipe:
         """Return the recipe for an event that joins one instance, the usual case."""
         at = slot.index
         mask = part.mask | 1 << at
         find = self._finder(slot, part)
-        reach = self._reach(slot, tuple(j for j in part.open if j != at))
+        reach = self._reach(slot, part.filled)
         combine = self._combination(slot, part)
         allows = self._restriction(mask, (part,))
         stage: Stage | None = None
@@ -172,26 +159,31 @@ class Joiner:
         def go_on(event: Event, now: int, values: Values) -> None:
             nonlocal stage
             for instance in find(now, values):
-                arranged = combine(instance.values, values)
+                arranged = combine(instance.values, values) if combine else instance.values
                 if allows is not None and not allows(arranged):
                     continue
-                latest = instance.latest.copy()
-                for j, limit in reach:
-                    latest[j] = min(latest[j], now + limit)
+                latest = instance.latest
+                if reach:
+                    latest = latest.copy()
+                    for j, limit in reach:
+                        latest[j] = min(latest[j], now + limit)
                 times = instance.times.copy()
                 times[at] = now
                 events = instance.events.copy()
                 events[at] = event
                 if stage is None:
                     stage = self._stage(mask)
-                self._admit(Instance(stage, arranged, times, events, latest), now)
+                stage.admit(Instance(stage, arranged, times, events, latest), now)
 
         return go_on
 
-    def _combination(self, slot: Slot, part: Stage) -> Callable[[Values, Values], Values]:
-        """Return a function that puts the values of an instance and of an event together."""
+    def _combination(self, slot: Slot, part: Stage) -> Callable[[Values, Values], Values] | None:
+        """Return what puts the values of an instance and of an event together.
+
+        It is None if the event has no variable that the instance does not have.
+        """
         if set(slot.pattern.variables) <= set(part.variables):
-            return lambda old, _new: old
+            return None
         source = (*part.variables, *slot.pattern.variables)
         arrange = self._arrangement(source, part.mask | 1 << slot.index)
         if arrange is None:
@@ -204,28 +196,47 @@ class Joiner:
         shared = _shared(slot, part)
         index = part.index_by(shared)
         key = key_of(slot.pattern.variables, shared)
-        limits = self._model.limits[at]
-        pauses = tuple((i, -limits[i]) for i in part.filled if limits[i] < 0)
+        pauses = self._pauses(slot, part)
 
-        def find(now: int, values: Values) -> Iterator[Instance]:
+        def find(now: int, values: Values) -> Iterable[Instance]:
             bucket = index.get(key(values))
             if bucket is None:
-                return
-            for instance in bucket:
-                if now > instance.latest[at]:
-                    continue
-                for i, pause in pauses:
-                    if now - instance.times[i] < pause:
-                        break
-                else:
-                    yield instance
+                return ()
+            found = [instance for instance in bucket if now <= instance.latest[at]]
+            for i, pause in pauses:
+                found = [instance for instance in found if now - instance.times[i] >= pause]
+            return found
 
         return find
 
-    def _reach(self, slot: Slot, others: Sequence[int]) -> tuple[tuple[int, int], ...]:
-        """Return which of *others* an event of *slot* limits, and how much later they can be."""
-        limits = self._model.limits[slot.index]
-        return tuple((j, limits[j]) for j in others if limits[j] < UNBOUNDED)
+    def _pauses(self, slot: Slot, part: Stage) -> tuple[tuple[int, int], ...]:
+        """Return after which slots of *part* a time must pass until *slot*, and which.
+
+        Left out is what follows from the others and from the order in which events come.
+        """
+        limits = self._model.limits
+        asked = {i: -limits[slot.index][i] for i in part.filled if limits[slot.index][i] < 0}
+        for i in list(asked):
+            others = (max(asked.get(j, 0), 0) - limits[j][i] for j in part.filled if j != i)
+            if any(pause >= asked[i] for pause in others):
+                del asked[i]
+        return tuple(asked.items())
+
+    def _reach(self, slot: Slot, filled: Sequence[int]) -> tuple[tuple[int, int], ...]:
+        """Return which slots an event of *slot* limits, and how much later they can be.
+
+        Left out are the slots in *filled*, and those that the events of these limit as much.
+        """
+        limits = self._model.limits
+        own = limits[slot.index]
+        return tuple(
+            (j, own[j])
+            for j in range(len(own))
+            if own[j] < UNBOUNDED
+            and j != slot.index
+            and j not in filled
+            and not any(min(own[i], 0) + limits[i][j] <= own[j] for i in filled)
+        )
 
     def _arrangement(self, source: Sequence[str], mask: int) -> Callable[[Values], Values] | None:
         return projection(source, self._variables(mask))
@@ -264,3 +275,14 @@ def _fit(instances: tuple[Instance, ...], filled: list[tuple[int, ...]]) -> bool
             if one is not other and any(other.times[i] > one.latest[i] for i in slots):
                 return False
     return True
+
+
+def _joined(instances: tuple[Instance, ...]) -> Instance:
+    """Return what some instances with nothing in common are together."""
+    first, *others = instances
+    latest, times, events = first.latest.copy(), first.times.copy(), first.events.copy()
+    for other in others:
+        latest = list(map(min, latest, other.latest))
+        for i in other.stage.filled:
+            times[i], events[i] = other.times[i], other.events[i]
+    return Instance(first.stage, first.values, times, events, latest)

@@ -7,9 +7,11 @@ instance die when the clock has passed one of them. Without this, instances woul
 their last event comes, only to be refused.
 """
 
+import sys
 from collections.abc import Callable, Iterable, Iterator, Sequence
+from operator import itemgetter
 
-from chronicles.constraints import INSTANT, UNBOUNDED
+from chronicles.constraints import INSTANT, NEVER, UNBOUNDED
 from chronicles.counting import CountedEvents
 from chronicles.events import Event
 from chronicles.instances import Agenda, Instance, Stage, Watch
@@ -22,7 +24,8 @@ __all__ = ["Handler", "Matcher"]
 Handler = Callable[[Event, int], None]
 """Takes in an event of the right name, at an instant."""
 
-_LEAST_TO_SWEEP = 1024
+_Notice = Callable[[Values | str, int], None]
+"""Lets instances react to a counted event with such values, at an instant."""
 
 
 class Matcher:
@@ -35,9 +38,11 @@ class Matcher:
 
     Attributes:
         model: The chronicle.
-        limit: How many instances are kept; None for any number.
+        counting: A handler for each counter, with the event type that it is for.
+        filling: A handler for each slot likewise. An event counts before it fills a slot.
+        limit: How many instances are kept.
         on_end: Called with each instance that can no longer become complete, and why.
-        on_given_up: Called with how many of the oldest instances were given up.
+        on_excess: Called when there are more instances than the limit.
     """
 
     def __init__(
@@ -46,40 +51,25 @@ class Matcher:
         self.model = model
         self._agenda = agenda
         self._on_match = on_match
-        self._watches: dict[Counter, list[Watch]] = {c: [] for c in model.counters}
+        self._notices: dict[Counter, list[_Notice]] = {c: [] for c in model.counters}
         self._counted = {c: CountedEvents(c) for c in model.counters if c.looks_back}
-        self._sweep_at = _LEAST_TO_SWEEP
         self._n_instances = 0
-        self.limit: int | None = None
+        self.limit = sys.maxsize
         self.on_end: Callable[[Matcher, Instance, str], None] | None = None
-        self.on_given_up: Callable[[Matcher, int], None] | None = None
-        self._joiner = Joiner(model, self._new_stage, self._admit)
-
-    def handlers(self) -> Iterator[tuple[str, str | None, Handler]]:
-        """Yield a handler for each predicate with the name and value of its events.
-
-        An event is given to the handlers in this order: it counts before it is used.
-        """
-        for counter in self.model.counters:
-            pattern = counter.pattern
-            yield pattern.event_type.name, pattern.to_value, self._counting(counter)
-        for slot in self.model.slots:
-            yield slot.pattern.event_type.name, slot.pattern.to_value, self._filling(slot)
+        self.on_excess: Callable[[Matcher], None] | None = None
+        self._joiner = Joiner(model, self._new_stage)
+        self.counting = [(c.pattern, self._counting(c)) for c in model.counters]
+        self.filling = [(s.pattern, self._filling(s)) for s in model.slots]
 
     def instances(self) -> Iterator[Instance]:
         """Yield all partial instances."""
         for stage in self._joiner.stages.values():
-            yield from stage.members
+            yield from stage.members()
 
     def clear(self) -> None:
         """Forget all instances."""
         for instance in list(self.instances()):
             self._remove(instance)
-
-    @property
-    def keeps_counts(self) -> bool:
-        """Whether `sweep` does anything."""
-        return bool(self._counted)
 
     def n_counted(self) -> int:
         """Return how many counted events are kept."""
@@ -90,21 +80,23 @@ class Matcher:
         earliest = clock + min(offset, 0)
         for stage in self._joiner.stages.values():
             if slot >= len(self.model.slots):
-                for instance in stage.members:
+                for instance in stage.members():
                     first = min([instance.times[i] for i in stage.filled])
                     earliest = min(earliest, first + offset)
             elif stage.mask & 1 << slot:
-                for instance in stage.members:
+                for instance in stage.members():
                     earliest = min(earliest, instance.times[slot] + offset)
         return earliest
 
-    def sweep(self, clock: int) -> None:
-        """Forget counted events that no instance can ask for, once in a while."""
-        if self._counted and self.n_counted() > self._sweep_at:
-            for counter, counted in self._counted.items():
-                begin = self.earliest_begin(counter.begin, clock, counter.begin_offset)
-                counted.forget_before(begin)
-            self._sweep_at = max(_LEAST_TO_SWEEP, 2 * self.n_counted())
+    def keep_to_limit(self) -> int:
+        """Give up the oldest instances if there are more than the limit; return how many."""
+        if self._n_instances <= self.limit:
+            return 0
+        n = self._n_instances - self.limit + self.limit // 16
+        oldest = sorted(self.instances(), key=_age)[:n]
+        for instance in oldest:
+            self._end(instance, "limit")
+        return len(oldest)
 
     # Events that fill slots.
 
@@ -112,41 +104,60 @@ class Matcher:
         recipes = self._joiner.recipes[slot.index]
         match = slot.pattern.match
         fill = _fill_once(match, recipes) if slot.pattern.loose else _fill(match, recipes)
-        if slot.earliest > -UNBOUNDED or slot.latest < UNBOUNDED:
-            return _within(fill, slot.earliest, slot.latest)
-        return fill
-
-    def _new_stage(self, mask: int) -> Stage:
-        stage = Stage(self.model, mask, self._review)
-        for watch in stage.watches:
-            self._watches[watch.counter].append(watch)
-        return stage
+        earliest = slot.earliest if slot.earliest > -UNBOUNDED else -NEVER
+        latest = slot.latest if slot.latest < UNBOUNDED else NEVER
+        is_windowed = earliest > -NEVER or latest < NEVER
+        return _within(fill, earliest, latest) if is_windowed else fill
 
     # Instances.
 
-    def _review(self, instance: Instance, clock: int) -> None:
-        """Decide about an instance that is due."""
-        if not instance.stage.is_complete:
-            self._end(instance, "deadline")
-        else:
-            self._judge(instance, clock)
-
-    def _admit(self, instance: Instance, now: int) -> None:
-        """Take in a new instance, unless it is dead or complete already."""
-        stage = instance.stage
-        if stage.is_complete:
-            self._complete(instance, now)
-            return
-        latest = instance.latest
+    def _new_stage(self, mask: int) -> Stage:
+        stage = Stage(self.model, mask)
+        stage.admit = self._admission(stage)
+        stage.review = self._judge if stage.is_complete else self._expire
         for watch in stage.watches:
-            if watch.counter.looks_back and not self._look_back(watch, instance, now):
-                return
-        deadline = min([latest[i] for i in stage.awaited])
-        if deadline < now:
-            return
-        self._add(instance)
-        if deadline < UNBOUNDED:
-            self._agenda.schedule(instance, deadline + INSTANT)
+            self._notices[watch.counter].append(self._noticing(stage, watch))
+        return stage
+
+    def _admission(self, stage: Stage) -> Callable[[Instance, int], None]:
+        """Return what takes in a new instance, unless it is dead or complete already."""
+        if stage.is_complete:
+            return self._completion()
+        looking_back = tuple(watch for watch in stage.watches if watch.counter.looks_back)
+        earliest = _earliest_of(stage.awaited)
+        schedule = self._agenda.schedule
+
+        def admit(instance: Instance, now: int) -> None:
+            for watch in looking_back:
+                if not self._look_back(watch, instance, now):
+                    return
+            deadline = earliest(instance.latest)
+            if deadline >= now:
+                self._add(instance)
+                if deadline < NEVER:
+                    schedule(instance, deadline + INSTANT)
+
+        return admit
+
+    def _completion(self) -> Callable[[Instance, int], None]:
+        """Return what decides about an instance all of whose slots have just been filled."""
+        counters, on_match = self.model.counters, self._on_match
+        if self.model.extremes or any(counter.looks_back for counter in counters):
+            return self._complete
+        ends = tuple((counter.end, counter.end_offset) for counter in counters)
+
+        def complete(instance: Instance, now: int) -> None:
+            times = instance.times
+            for end, offset in ends:
+                if times[end] + offset > now:
+                    self._complete(instance, now)
+                    return
+            on_match(self, instance, now)
+
+        return complete
+
+    def _expire(self, instance: Instance, _clock: int) -> None:
+        self._end(instance, "deadline")
 
     def _look_back(self, watch: Watch, instance: Instance, now: int) -> bool:
         """Apply the events that have been counted already; return whether that leaves it alive."""
@@ -164,34 +175,23 @@ class Matcher:
         end = counter.end
         if watch.end_known:
             return instance.times[end] + counter.end_offset <= excess
-        latest = instance.latest
         bound = excess - counter.end_offset
-        if bound >= latest[end]:
+        if bound >= instance.latest[end]:
             return True
-        latest[end] = bound
-        limits = self.model.limits[end]
-        for i in instance.stage.open:
-            if limits[i] < UNBOUNDED and bound + limits[i] < latest[i]:
-                latest[i] = bound + limits[i]
+        reach = self._reach(end, instance.stage)
+        latest = instance.latest = _limited(instance.latest, end, bound, reach)
         return min([latest[i] for i in instance.stage.awaited]) >= now
+
+    def _reach(self, end: int, stage: Stage) -> tuple[tuple[int, int], ...]:
+        """Return which open slots the end of an interval limits, and how much later they are."""
+        limits = self.model.limits[end]
+        return tuple((i, limits[i]) for i in stage.open if i != end and limits[i] < UNBOUNDED)
 
     def _add(self, instance: Instance) -> None:
         self._n_instances += 1
-        stage = instance.stage
-        stage.add(instance)
-        for watch in stage.watches:
-            stage.watch(watch, watch.key(instance.values), instance)
-
-    def keep_to_limit(self) -> None:
-        """Give up the oldest instances if there are more than the limit."""
-        if self.limit is None or self._n_instances <= self.limit:
-            return
-        n = self._n_instances - self.limit + self.limit // 16
-        oldest = sorted(self.instances(), key=_age)[:n]
-        for instance in oldest:
-            self._end(instance, "limit")
-        if self.on_given_up is not None:
-            self.on_given_up(self, len(oldest))
+        if self._n_instances > self.limit and self.on_excess is not None:
+            self.on_excess(self)
+        instance.stage.add(instance)
 
     def _end(self, instance: Instance, reason: str) -> None:
         """Remove an instance that can no longer become complete."""
@@ -210,7 +210,7 @@ class Matcher:
         pattern = counter.pattern
         match = pattern.match
         key = key_of(pattern.variables, pattern.variables)
-        watches = self._watches[counter]
+        notices = self._notices[counter]
         counted = self._counted.get(counter)
 
         def count(event: Event, now: int) -> None:
@@ -219,14 +219,53 @@ class Matcher:
                 return
             place = key(values)
             if counted is not None:
+                if counted.is_full:
+                    begin = self.earliest_begin(counter.begin, now, counter.begin_offset)
+                    counted.forget_before(begin)
                 counted.add(place, now)
-            for watch in watches:
-                bucket = watch.index.get(place)
-                if bucket is not None:
-                    for instance in list(bucket):
-                        self._notice(watch, instance, now)
+            for notice in notices:
+                notice(place, now)
 
         return count
+
+    def _noticing(self, stage: Stage, watch: Watch) -> _Notice:
+        """Return what lets the instances of *stage* react to the events of a counter."""
+        index = watch.index
+        if not (stage.is_complete or watch.end_known or watch.counter.looks_back):
+            return self._forbidding(stage, watch)
+
+        def notice(place: Values | str, now: int) -> None:
+            bucket = index.get(place)
+            if bucket is not None:
+                for instance in list(bucket):
+                    self._notice(watch, instance, now)
+
+        return notice
+
+    def _forbidding(self, stage: Stage, watch: Watch) -> _Notice:
+        """Return what ends the intervals in which nothing may happen: the usual case."""
+        index, counter = watch.index, watch.counter
+        begin, begin_offset, end = counter.begin, counter.begin_offset, counter.end
+        reach = self._reach(end, stage)
+        earliest = _earliest_of(stage.awaited)
+        schedule = self._agenda.schedule
+
+        def forbid(place: Values | str, now: int) -> None:
+            bucket = index.get(place)
+            if bucket is None:
+                return
+            bound = now - counter.end_offset
+            for instance in list(bucket):
+                if bound >= instance.latest[end] or now < instance.times[begin] + begin_offset:
+                    continue
+                latest = instance.latest = _limited(instance.latest, end, bound, reach)
+                due = earliest(latest) + INSTANT
+                if due <= now:
+                    self._end(instance, _excess_of(counter))
+                elif due != instance.due:
+                    schedule(instance, due)
+
+        return forbid
 
     def _notice(self, watch: Watch, instance: Instance, now: int) -> None:
         """Let *instance* react to a counted event at *now*."""
@@ -243,9 +282,9 @@ class Matcher:
         if not self._limit_end(watch, instance, excess, now):
             self._end(instance, _excess_of(counter))
             return
-        due = min([instance.latest[i] for i in instance.stage.awaited]) + INSTANT
-        if due < UNBOUNDED and due != instance.due:
-            self._agenda.schedule(instance, due)
+        deadline = min([instance.latest[i] for i in instance.stage.awaited])
+        if deadline < NEVER and deadline + INSTANT != instance.due:
+            self._agenda.schedule(instance, deadline + INSTANT)
 
     def _notice_last(self, watch: Watch, instance: Instance, now: int) -> None:
         """Let an instance all of whose slots are filled react to a counted event at *now*."""
@@ -330,6 +369,23 @@ class Matcher:
         if end > clock:
             return (None, end)
         return (end, end) if n >= counter.least else never
+
+
+def _limited(
+    latest: list[int], at: int, bound: int, reach: tuple[tuple[int, int], ...]
+) -> list[int]:
+    """Return the latest times of slots when one of them cannot be filled after *bound*."""
+    limited = latest.copy()
+    limited[at] = bound
+    for i, limit in reach:
+        limited[i] = min(limited[i], bound + limit)
+    return limited
+
+
+def _earliest_of(places: tuple[int, ...]) -> Callable[[list[int]], int]:
+    """Return a function that finds the least of the numbers at some places of a list."""
+    pick = itemgetter(*places)
+    return pick if len(places) == 1 else lambda numbers: min(pick(numbers))
 
 
 def _age(instance: Instance) -> int:

@@ -41,12 +41,13 @@ class Pattern:
         event_type: What it was made from.
         variables: Names of its `?` variables, each once, in the order of the text.
         to_value: The constant value that the attribute must have afterwards, if there is one.
+        constants: The arguments that must have a certain value, by their places.
         loose: Whether different events may match with the same values of the variables.
         match: Returns the values of the variables if an event of the right name is of this
             type, and None otherwise. A named variable does not match an unknown value.
     """
 
-    __slots__ = ("event_type", "loose", "match", "to_value", "variables")
+    __slots__ = ("constants", "event_type", "loose", "match", "to_value", "variables")
 
     def __init__(
         self,
@@ -60,6 +61,8 @@ class Pattern:
         self.variables = variables
         self.match = match
         self.to_value = change.after.text if change and isinstance(change.after, Value) else None
+        arguments = enumerate(event_type.arguments)
+        self.constants = {i: a.text for i, a in arguments if isinstance(a, Value)}
         is_exact = all(isinstance(p, Variable | Value) for p in parameters)
         self.loose = change is None or not is_exact
 
@@ -133,6 +136,10 @@ def _change_match(
     from_value = before.text if isinstance(before, Value) else None
     to_value = after.text if isinstance(after, Value) else None
 
+    def match_value(event: Event) -> Values | None:
+        is_it = event.to_value == to_value and len(event.arguments) == n_arguments
+        return event.arguments if is_it else None
+
     def match(event: Event) -> Values | None:
         if to_value is not None:
             if event.to_value != to_value:
@@ -143,7 +150,7 @@ def _change_match(
             return None
         return event.arguments if len(event.arguments) == n_arguments else None
 
-    return match
+    return match_value if from_value is None and to_value is not None else match
 
 
 def _general_match(

@@ -3,7 +3,7 @@
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 
-from chronicles.constraints import UNBOUNDED
+from chronicles.constraints import NEVER
 from chronicles.events import Event
 from chronicles.instances import Instance
 from chronicles.models import Model
@@ -93,7 +93,7 @@ def _slots(
         yield Awaited(
             text_of(EventAt(MADE_IN_PYTHON, event_type, slot.instant)),
             TimePoint(earliest),
-            TimePoint(latest) if latest < UNBOUNDED else None,
+            TimePoint(latest) if latest < NEVER else None,
         )
 
 

@@ -18,16 +18,19 @@ leave open:
 """
 
 import logging
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Mapping
+from graphlib import CycleError, TopologicalSorter
+from typing import cast
 
-from chronicles.constraints import floor_to_instant
+from chronicles.constraints import INSTANT
 from chronicles.events import Event, Recognition, event_from_recognition
 from chronicles.instances import Agenda, Instance
-from chronicles.matching import Handler, Matcher
+from chronicles.matching import Matcher
 from chronicles.models import Model
-from chronicles.patterns import Values
+from chronicles.patterns import Values, projection
 from chronicles.prospects import EndedInstance, PartialInstance, partial_instance
 from chronicles.reporting import NonOverlapping
+from chronicles.routing import route
 from dyknow.source_text import nearest_name
 from dyknow.time import TimePoint
 
@@ -38,18 +41,8 @@ _logger = logging.getLogger(__name__)
 _Found = tuple[int, int, Matcher, Instance]
 """When it was recognised, the place of its chronicle, its matcher, and the match."""
 
-
-class _Route:
-    """The handlers of the events of one name."""
-
-    def __init__(self, handlers: list[tuple[str | None, Handler]]) -> None:
-        values = {value for value, _ in handlers if value is not None}
-        self.by_value = {value: self._of(handlers, value) for value in values}
-        self.other = self._of(handlers, None)
-
-    @staticmethod
-    def _of(handlers: list[tuple[str | None, Handler]], value: str | None) -> tuple[Handler, ...]:
-        return tuple(handler for wanted, handler in handlers if wanted in (None, value))
+_Uses = dict[Matcher, frozenset[str]]
+"""The names of the events that each chronicle asks for."""
 
 
 class Recogniser:
@@ -81,7 +74,11 @@ class Recogniser:
         self._agenda = Agenda()
         self._found: list[_Found] = []
         self._seen: set[tuple[str, Values, str | None, str | None]] = set()
+        self._too_many: list[Matcher] = []
         self._matchers: list[Matcher] = []
+        self._uses: _Uses = {}
+        self._level: dict[Matcher, int] = {}
+        self._makers: dict[Matcher, Callable[[Instance, int], Recognition]] = {}
         self._reports: dict[Matcher, NonOverlapping] = {}
         self._n_given_up: dict[str, int] = {}
         self.register(models)
@@ -109,20 +106,18 @@ class Recogniser:
                 be made of themselves; none of the models is registered then.
         """
         added = [Matcher(model, self._agenda, self._note) for model in models]
-        matchers = [*self._matchers, *added]
-        names = [matcher.model.name for matcher in matchers]
-        for name in dict.fromkeys(names):
-            if names.count(name) > 1:
-                raise ValueError(f"chronicle '{name}' is recognised already")
-        _levels(matchers)
+        matchers = {matcher.model.name: matcher for matcher in self._matchers}
         for matcher in added:
-            matcher.limit = self._limit
-            matcher.on_end = self._note_end if self._on_end is not None else None
-            matcher.on_given_up = self._note_given_up
-            if matcher.model.counted_interval is not None:
-                interval = matcher.model.counted_interval
-                self._reports[matcher] = NonOverlapping(matcher, interval)
-        self._set_matchers(matchers)
+            if matchers.setdefault(matcher.model.name, matcher) is not matcher:
+                raise ValueError(f"chronicle '{matcher.model.name}' is recognised already")
+        uses = {**self._uses, **{matcher: _names_used(matcher) for matcher in added}}
+        if _are_made_of_others(added, uses, matchers):
+            level = _levels(uses, matchers)
+        else:
+            level = {**self._level, **dict.fromkeys(added, 0)}
+        for matcher in added:
+            self._prepare(matcher)
+        self._set_matchers(list(matchers.values()), uses, level)
 
     def withdraw(self, name: str) -> None:
         """Stop recognising a chronicle and forget its partial instances.
@@ -138,8 +133,11 @@ class Recogniser:
             raise ValueError(f"no chronicle called '{name}' is recognised{hint}")
         for matcher in gone:
             matcher.clear()
+            self._makers.pop(matcher)
             self._reports.pop(matcher, None)
-        self._set_matchers([matcher for matcher in self._matchers if matcher not in gone])
+        matchers = [matcher for matcher in self._matchers if matcher not in gone]
+        uses = {matcher: self._uses[matcher] for matcher in matchers}
+        self._set_matchers(matchers, uses, self._level)
 
     def push(self, time: TimePoint, events: Iterable[Event]) -> list[Recognition]:
         """Take in *events* that happened at *time* and return what is recognised by then.
@@ -147,18 +145,16 @@ class Recogniser:
         Further events of the same instant may follow in another call. Late events are left out
         and counted in `n_late`.
         """
-        now = floor_to_instant(time)
+        now = time - time % INSTANT
         recognised: list[Recognition] = []
         if now != self._clock:
             if self._clock is not None and now < self._clock:
                 self.n_late += sum(1 for _ in events)
-                return []
-            if self._agenda.is_due(now):
+                return recognised
+            if self._agenda.next <= now:
                 self._work_off(now, recognised)
             self._clock = now
             self._seen.clear()
-            for matcher in self._with_counts:
-                matcher.sweep(now)
         self._handle(events, now)
         if self._found:
             self._take_found(now, recognised)
@@ -192,45 +188,59 @@ class Recogniser:
         n_reports = sum(len(report) for report in self._reports.values())
         return n_instances + n_counted + n_reports + len(self._agenda)
 
-    def _set_matchers(self, matchers: list[Matcher]) -> None:
-        self._matchers = matchers
+    def _prepare(self, matcher: Matcher) -> None:
+        """Connect a matcher that is new."""
+        self._makers[matcher] = _maker(matcher.model)
+        if matcher.model.counted_interval is not None:
+            self._reports[matcher] = NonOverlapping(matcher, matcher.model.counted_interval)
+        if self._limit is not None:
+            matcher.limit = self._limit
+            matcher.on_excess = self._too_many.append
+        if self._on_end is not None:
+            matcher.on_end = self._note_end
+
+    def _set_matchers(
+        self, matchers: list[Matcher], uses: _Uses, level: dict[Matcher, int]
+    ) -> None:
+        self._matchers, self._uses, self._level = matchers, uses, level
         self._place = {matcher: i for i, matcher in enumerate(matchers)}
-        self._level = _levels(matchers)
-        self._with_counts = [m for m in matchers if m.keeps_counts]
-        handlers: dict[str, list[tuple[str | None, Handler]]] = {}
-        for matcher in matchers:
-            for name, value, handler in matcher.handlers():
-                handlers.setdefault(name, []).append((value, handler))
-        self._routes = {name: _Route(found) for name, found in handlers.items()}
+        self._routes = route(matchers)
 
     def _handle(self, events: Iterable[Event], now: int) -> None:
         seen, routes = self._seen, self._routes
         for event in events:
-            route = routes.get(event.attribute)
-            if route is None:
+            to_value = event.to_value
+            by_value = routes.get(event.attribute)
+            if by_value is None:
                 continue
-            value = event.to_value
-            fact = (event.attribute, event.arguments, event.from_value, value)
-            if fact in seen:
-                continue
-            seen.add(fact)
-            for handle in route.by_value.get(value, route.other):  # type: ignore[arg-type]
-                handle(event, now)
-        if self._limit is not None:
-            for matcher in self._matchers:
-                matcher.keep_to_limit()
+            handlers = by_value.get(to_value) or by_value[None]
+            if handlers:
+                fact = (event.attribute, event.arguments, event.from_value, to_value)
+                if fact not in seen:
+                    seen.add(fact)
+                    for handle in handlers:
+                        handle(event, now)
+        if self._too_many:
+            self._keep_to_limit()
+
+    def _keep_to_limit(self) -> None:
+        for matcher in dict.fromkeys(self._too_many):
+            n = matcher.keep_to_limit()
+            if n:
+                self._note_given_up(matcher, n)
+        self._too_many.clear()
 
     def _work_off(self, now: int, recognised: list[Recognition]) -> None:
         """Let time pass until *now*; what is recognised on the way counts at its own time."""
-        due = self._agenda.due()
-        while due is not None and due <= now:
+        agenda = self._agenda
+        while agenda.next <= now:
+            due, instances = agenda.take()
             self._clock = due
             self._seen.clear()
-            for _, instance in self._agenda.until(due):
+            for instance in instances:
                 instance.stage.review(instance, due)
             if self._found:
                 self._take_found(due, recognised)
-            due = self._agenda.due()
 
     def _note(self, matcher: Matcher, instance: Instance, recognised_at: int) -> None:
         self._found.append((recognised_at, self._place[matcher], matcher, instance))
@@ -255,46 +265,59 @@ class Recogniser:
     def _take_found(self, now: int, recognised: list[Recognition]) -> None:
         """Report the matches found, and let them be events at once, simple chronicles first."""
         while self._found:
-            lowest = min(self._level[matcher] for _, _, matcher, _ in self._found)
-            found = [f for f in self._found if self._level[f[2]] == lowest]
-            self._found = [f for f in self._found if self._level[f[2]] != lowest]
-            new = [
-                _recognition(matcher.model, instance, recognised_at)
-                for recognised_at, _, matcher, instance in sorted(found, key=_order)
-                if self._is_reported(matcher, instance)
-            ]
+            found, self._found = self._found, []
+            if len(found) > 1:
+                lowest = min(self._level[matcher] for _, _, matcher, _ in found)
+                self._found = [f for f in found if self._level[f[2]] != lowest]
+                found = sorted((f for f in found if self._level[f[2]] == lowest), key=_order)
+            new = []
+            for recognised_at, _, matcher, instance in found:
+                recognition = self._makers[matcher](instance, recognised_at)
+                report = self._reports.get(matcher)
+                if report is None or report.admits(recognition, instance.times, now):
+                    new.append(recognition)
             recognised += new
             used = [one for one in new if one.chronicle in self._routes]
             if used:
                 self._handle(map(event_from_recognition, used), now)
 
-    def _is_reported(self, matcher: Matcher, instance: Instance) -> bool:
-        report = self._reports.get(matcher)
-        if report is None:
-            return True
-        assert self._clock is not None
-        arguments = tuple(_arguments(matcher.model, instance).values())
-        return report.admits(arguments, instance.times, self._clock)
+
+def _names_used(matcher: Matcher) -> frozenset[str]:
+    patterns = (pattern for pattern, _ in (*matcher.counting, *matcher.filling))
+    return frozenset(pattern.event_type.name for pattern in patterns)
 
 
-def _levels(matchers: Sequence[Matcher]) -> dict[Matcher, int]:
+def _are_made_of_others(
+    added: Iterable[Matcher], uses: _Uses, matchers: Mapping[str, Matcher]
+) -> bool:
+    """Return whether one of the chronicles *added* is made of others, or others of it."""
+    used = frozenset().union(*uses.values())
+    return any(m.model.name in used or uses[m] & matchers.keys() for m in added)
+
+
+def _levels(uses: _Uses, matchers: Mapping[str, Matcher]) -> dict[Matcher, int]:
     """Return how deep each chronicle is made of other chronicles.
 
     Raises:
         ValueError: A chronicle is made of itself.
     """
-    names = {matcher.model.name for matcher in matchers}
-    used = {m: {name for name, _, _ in m.handlers() if name in names} for m in matchers}
+    order = TopologicalSorter(
+        {
+            matcher: [matchers[name] for name in names if name in matchers]
+            for matcher, names in uses.items()
+        }
+    )
+    try:
+        order.prepare()
+    except CycleError as error:
+        listed = ", ".join(sorted({f"'{matcher.model.name}'" for matcher in error.args[1]}))
+        raise ValueError(f"chronicles are made of themselves: {listed}") from error
     level: dict[Matcher, int] = {}
-    done: set[str] = set()
     depth = 0
-    while len(level) < len(matchers):
-        ready = [m for m in matchers if m not in level and used[m] <= done]
-        if not ready:
-            listed = ", ".join(f"'{m.model.name}'" for m in matchers if m not in level)
-            raise ValueError(f"chronicles are made of themselves: {listed}")
+    while order.is_active():
+        ready = order.get_ready()
         level.update(dict.fromkeys(ready, depth))
-        done.update(matcher.model.name for matcher in ready)
+        order.done(*ready)
         depth += 1
     return level
 
@@ -304,25 +327,26 @@ def _order(found: _Found) -> tuple[int, int, int, list[int], Values]:
     return recognised_at, place, max(instance.times), instance.times, instance.values
 
 
-def _arguments(model: Model, instance: Instance) -> dict[str, str]:
-    value_by_name = dict(zip(instance.stage.variables, instance.values, strict=True))
-    return {name.removeprefix("?"): value_by_name[name] for name in model.parameters}
+def _maker(model: Model) -> Callable[[Instance, int], Recognition]:
+    """Return what makes recognitions of the matches of *model*."""
+    parameters = tuple(name.removeprefix("?") for name in model.parameters)
+    values_of = projection(model.variables, model.parameters)
+    names = tuple(slot.instant for slot in model.slots)
+    interval = model.counted_interval
 
+    def make(instance: Instance, recognised_at: int) -> Recognition:
+        times, values = instance.times, instance.values
+        instants = dict(zip(names, times, strict=False))
+        for name, (at, by) in model.derived.items():
+            instants[name] = times[at] + by
+        return Recognition(
+            model.name,
+            dict(zip(parameters, values_of(values) if values_of else values, strict=True)),
+            cast(dict[str, TimePoint], instants),
+            cast(tuple[Event, ...], tuple(instance.events)),  # for all slots are filled
+            cast(TimePoint, times[interval[0]] if interval else min(times)),
+            cast(TimePoint, times[interval[1]] if interval else max(times)),
+            cast(TimePoint, recognised_at),
+        )
 
-def _recognition(model: Model, instance: Instance, recognised_at: int) -> Recognition:
-    times = instance.times
-    first, last = min(times), max(times)
-    if model.counted_interval is not None:
-        first, last = (times[slot] for slot in model.counted_interval)
-    return Recognition(
-        chronicle=model.name,
-        arguments=_arguments(model, instance),
-        instants={
-            **{slot.instant: TimePoint(times[slot.index]) for slot in model.slots},
-            **{name: TimePoint(times[at] + by) for name, (at, by) in model.derived.items()},
-        },
-        events=tuple(event for event in instance.events if event is not None),
-        begin=TimePoint(first),
-        end=TimePoint(last),
-        recognised_at=TimePoint(recognised_at),
-    )
+    return make

@@ -5,6 +5,7 @@ less: a car that passes another is one overtake, however many ways there are to 
 instants. `report non_overlapping (t1, t2)` says so.
 """
 
+from chronicles.events import Recognition
 from chronicles.matching import Matcher
 from chronicles.patterns import Values
 
@@ -31,8 +32,9 @@ class NonOverlapping:
     def __len__(self) -> int:
         return self._n_reported
 
-    def admits(self, arguments: Values, times: list[int], clock: int) -> bool:
-        """Return whether to report a match, and remember it if so."""
+    def admits(self, recognition: Recognition, times: list[int], clock: int) -> bool:
+        """Return whether to report *recognition* of a match with *times*; remember it if so."""
+        arguments = tuple(recognition.arguments.values())
         begin, end = times[self._first], times[self._last]
         reported = self._reported.setdefault(arguments, [])
         if any(begin <= last and first <= end for first, last in reported):
