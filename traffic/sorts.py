@@ -102,6 +102,8 @@ SORTS: Mapping[str, Callable[[Any], str | None]] = {
     "cars": _Tables({**_ON_ROAD, "lane": _COUNT, "link": _COUNT, "crossing": _COUNT}),
     "car_pairs": _Tables({**_PAIR, "ahead": _NUMBER, "left": _NUMBER}),
     "car_relations": _Tables({**_PAIR, **dict.fromkeys(("behind", "in_front", "close"), _TRUTH)}),
+    "headways": _Tables({**_PAIR, "time_gap": _NUMBER, "deviation": _NUMBER, "aside": _NUMBER}),
+    "car_following": _Tables({**_PAIR, "follows": _TRUTH, "tailgates": _TRUTH}),
     "events": partial(_fault_of_all, Event),
     "recognitions": partial(_fault_of_all, Recognition),
 }

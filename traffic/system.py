@@ -5,7 +5,7 @@ module translates what the packages have into what their neighbours want, which 
 complete list of what flows between them.
 """
 
-from collections.abc import Callable, Collection, Iterator, Mapping
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, fields
 from functools import cache, partial
 from pathlib import Path
@@ -22,6 +22,7 @@ from anchoring.world_objects import WorldObject
 from chronicles.models import models_from_chronicles
 from chronicles.parser import read_chronicles
 from chronicles.processes import ChronicleRecogniser
+from chronicles.recognised import RecognitionEvents
 from dyknow.kpl.check import check
 from dyknow.kpl.names import descendants
 from dyknow.kpl.parser import parse_specification
@@ -53,6 +54,8 @@ from perception.scene import Ground, build_surroundings
 from traffic.bundled import data_folder
 from traffic.errors import RequestError
 from traffic.features.changes import Changes
+from traffic.features.following import Following
+from traffic.features.headways import Headways
 from traffic.features.link_turns import LinkTurns
 from traffic.features.moving import Moving
 from traffic.features.pairs import NearPairs
@@ -75,6 +78,7 @@ __all__ = [
     "read_specification",
     "sort_of",
     "specification_from",
+    "vocabularies_of",
 ]
 
 _SPECIFICATION = "monitoring.kpl"
@@ -375,10 +379,15 @@ def _sources(world: World) -> dict[str, Any]:
     }
 
 
+def vocabularies_of(road_map: RoadMap) -> dict[str, Sequence[str]]:
+    """Return the names that the numbers in a column stand for, by the name of the column."""
+    return {"link": road_map.links, "crossing": road_map.crossings}
+
+
 def _units(world: World, made: Made) -> dict[str, Any]:
     country, colour, thermal, positions = world.generator.spawn(4)
     painter = cache(lambda: _painter(world.road_map, country))
-    vocabularies = {"link": world.road_map.links, "crossing": world.road_map.crossings}
+    vocabularies = vocabularies_of(world.road_map)
     return {
         "ColourCamera": lambda: ColourCamera(painter=painter(), generator=colour),
         "ThermalCamera": lambda: ThermalCamera(painter=painter(), generator=thermal),
@@ -388,6 +397,8 @@ def _units(world: World, made: Made) -> dict[str, Any]:
         "StableFor": StableFor,
         "NearPairs": NearPairs,
         "CarRelations": CarRelations,
+        "Headways": partial(Headways, world.road_map),
+        "Following": Following,
         "Changes": partial(Changes, vocabularies),
         "Chronicles": _Chronicles(made).recogniser,
     }

@@ -15,7 +15,7 @@ class LinkTurns:
 
     `links.left[?l1, ?x, ?l2]` is true if who comes from the link ?l1 through the crossing ?x and
     goes on on the link ?l2 has turned left; likewise `right`, `straight` and `uturn`
-    (Heintz 2009, section 8.7.4).
+    (Heintz 2009, section 8.7.4). `links.turn[?l1, ?x, ?l2]` has the name of the turn as its value.
     """
 
     def __init__(self, road_map: RoadMap) -> None:
@@ -24,8 +24,9 @@ class LinkTurns:
     def samples(self) -> Iterator[Sample[tuple[Event, ...]]]:
         """Yield the sample."""
         zero = TimePoint(0)
-        events = tuple(
-            Event(f"links.{turn.value}", place, None, "true", zero)
-            for place, turn in self._map.turn_names.items()
+        turns = self._map.turn_names.items()
+        events = (
+            *(Event(f"links.{turn.value}", place, None, "true", zero) for place, turn in turns),
+            *(Event("links.turn", place, None, turn.value, zero) for place, turn in turns),
         )
         yield Sample(events, zero, zero)

@@ -1,0 +1,115 @@
+"""Who follows whom, and who does so too closely.
+
+Relations between a car and the next one ahead of it on its lane, with hysteresis. What makes a
+relation true is stricter than what keeps it true, and either has to be so by more than the
+uncertainty of what is compared: an uncertain estimate changes nothing.
+"""
+
+from collections.abc import Iterable
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from dyknow.streams.process import Reactive
+from dyknow.streams.sample import Sample
+from dyknow.streams.table import Table
+from dyknow.time import SECOND, Duration, TimePoint
+from traffic.features.carrying import CarriedColumns
+
+__all__ = ["FOLLOWING", "Following"]
+
+FOLLOWING = ("follows", "tailgates")
+
+Truths = npt.NDArray[np.bool_]
+
+_SLACK = 1.25
+"""What keeps a relation true may be so much more than what makes it true."""
+
+
+class Following(Reactive):
+    """Computes of each pair of cars, one behind the other, whether the first follows the second.
+
+    One table comes out for each table of headways that goes in.
+
+    * `follows`: the second car is the next one ahead on the lane of the first, at a time gap of
+      at most *near*, and both are faster than *moving*;
+    * `tailgates`: it is the next one ahead at a time gap of less than *close*, and the first car
+      is faster than *fast*.
+
+    A relation that is true stays so up to a time gap one and a quarter times as long, and down to
+    speeds one and a quarter times lower. Time gaps and places in the lane count with
+    *certainty* standard deviations against every change. Cars are in one lane if they are at
+    most *offset* aside.
+
+    Args:
+        near: Time gap up to which a car follows.
+        close: Time gap below which a car tailgates.
+        moving: Speed of a car that follows or is followed, m/s.
+        fast: Speed of a car that tailgates, m/s.
+        offset: Half of a lane, metres.
+        certainty: Standard deviations.
+    """
+
+    def __init__(
+        self,
+        *,
+        near: Duration,
+        close: Duration,
+        moving: float,
+        fast: float,
+        offset: float,
+        certainty: float,
+    ) -> None:
+        if not 0 < close <= near:
+            raise ValueError(f"expected 0 < close <= near, found {close} and {near}")
+        self._near = near / SECOND
+        self._close = close / SECOND
+        self._moving = moving
+        self._fast = fast
+        self._offset = offset
+        self._certainty = certainty
+        self._state = CarriedColumns(dict.fromkeys(("same_lane", *FOLLOWING), np.False_))
+
+    def push(self, now: TimePoint, inputs: tuple[Sample[Any], ...]) -> Iterable[Sample[Table]]:
+        """Emit the relations of the newest table of headways."""
+        (sample,) = inputs
+        headways: Table = sample.value
+        self._state.align(headways.ids)
+        is_next = self._next_ahead(headways)
+        speed = headways["speed"]
+        slower = np.minimum(speed, headways["speed_of_second"])
+        time_gap, margin = headways["time_gap"], self._certainty * headways["deviation"]
+        at_least, at_most = time_gap - margin, time_gap + margin
+        self._hold(
+            "follows",
+            is_next & (at_most <= self._near) & (slower > self._moving),
+            is_next & (at_least <= _SLACK * self._near) & (_SLACK * slower > self._moving),
+        )
+        self._hold(
+            "tailgates",
+            is_next & (at_most < self._close) & (speed > self._fast),
+            is_next & (at_least < _SLACK * self._close) & (_SLACK * speed > self._fast),
+        )
+        relations = {name: self._state[name] for name in FOLLOWING}
+        columns = {"first": headways["first"], "second": headways["second"], **relations}
+        yield Sample(Table("following", headways.ids, columns), sample.valid_time, now)
+
+    def _next_ahead(self, headways: Table) -> Truths:
+        """Return in which pairs the second car is the next one on the lane of the first."""
+        aside, margin = headways["aside"], self._certainty * headways["aside_deviation"]
+        self._hold(
+            "same_lane",
+            aside + margin <= self._offset,
+            aside - margin <= _SLACK * self._offset,
+        )
+        (rows,) = np.nonzero(self._state["same_lane"])
+        is_next = np.zeros(len(headways), dtype=np.bool_)
+        if len(rows):
+            order = rows[np.lexsort((headways["ahead"][rows], headways["first"][rows]))]
+            first = headways["first"][order]
+            is_next[order[np.append(True, first[1:] != first[:-1])]] = True
+        return is_next
+
+    def _hold(self, name: str, begins: Truths, stays: Truths) -> None:
+        self._state[name] = begins | (self._state[name] & stays)
