@@ -25,12 +25,19 @@ class TruePlaces:
         direction: shape (n,), 1 if the vehicle travels along its link, -1 if against it.
         progress: shape (n,), metres of the body's centre along the link, in the direction of
             travel; NaN off the links.
+        road: shape (n,), the road on which the vehicle travels, or -1.
+        s: shape (n,), metres of the body's centre along that road; negative while the front bumper
+            alone is on it. NaN off the roads.
+        d: shape (n,), metres of the body's centre to the left of the middle of that road, or NaN.
     """
 
     link: Indices
     crossing: Indices
     direction: Floats
     progress: Floats
+    road: Indices
+    s: Floats
+    d: Floats
 
 
 class PlaceReader:
@@ -62,17 +69,17 @@ class PlaceReader:
         )
         link, crossing, road, opposite = found
         position = frame.vehicles["position"]
-        s, _ = self._map.project(position, road)
+        s, d = self._map.project(position, road)
         along = self._map.heading_at(road, s)
         against = np.cos(frame.vehicles["heading"] - along) < 0  # false where it is NaN
         crossed = against & (opposite >= 0)
         if crossed.any():
             road = np.where(crossed, opposite, road)
-            s[crossed], _ = self._map.project(position[crossed], road[crossed])
+            s[crossed], d[crossed] = self._map.project(position[crossed], road[crossed])
         sign = np.where(against & ~crossed, -1.0, 1.0)
         direction = self._map.direction_in_link[road] * sign
         progress = direction * self._map.position_along_link(road, s)
-        return TruePlaces(link, crossing, direction, progress)
+        return TruePlaces(link, crossing, direction, progress, road, s, d)
 
     def _learn(self) -> None:
         """Look up the lanes that the simulator has named since the last frame."""

@@ -9,10 +9,10 @@ from hypothesis import strategies as st
 
 from dyknow.streams.table import Table
 from dyknow.time import SECOND, TimePoint
+from tests.support.true_places import true_places
 from traffic.sumo.simulation import Frame
 from traffic.truth.manoeuvres import TrueManoeuvre
 from traffic.truth.overtakes import OvertakeWatcher
-from traffic.truth.places import TruePlaces
 
 Row = tuple[int, float, float, int, float]
 """Vehicle, progress, speed, link, metres to the left of the middle of the road."""
@@ -39,8 +39,7 @@ def watch_all(frames: Sequence[Sequence[Row]], step: int = SECOND) -> list[TrueM
                 "length": np.full(n, 4.0),
             },
         )
-        none = np.full(n, -1, dtype=np.int32)
-        places = TruePlaces(link.astype(np.int32), none, np.ones(n), progress.astype(float))
+        places = true_places(n, link=link.astype(np.int32), progress=progress.astype(float))
         frame = Frame(TimePoint(i * step), vehicles, Table("vehicle", ids, {}))
         found += watcher.observe(frame, places)
     return found + watcher.finish()

@@ -9,9 +9,9 @@ from hypothesis import strategies as st
 from dyknow.streams.table import Table
 from dyknow.time import TimePoint
 from networks.turns import Turn
+from tests.support.true_places import true_places
 from traffic.sumo.simulation import Frame
 from traffic.truth.manoeuvres import TrueManoeuvre
-from traffic.truth.places import TruePlaces
 from traffic.truth.turns import TurnWatcher
 
 Place = tuple[int, int] | None
@@ -41,9 +41,9 @@ def watch(*paths: Sequence[Place]) -> list[TrueManoeuvre]:
         there = [(i, place) for i, place in enumerate(places) if place is not None]
         ids = np.array([i for i, _ in there], dtype=np.int64)
         at = np.array([place for _, place in there], dtype=np.int32).reshape(-1, 2)
-        none = np.zeros(len(ids))
         frame = Frame(TimePoint(time), Table("vehicle", ids, {}), Table("vehicle", ids, {}))
-        found += watcher.observe(frame, TruePlaces(at[:, 0], at[:, 1], none, none))
+        places_now = true_places(len(ids), link=at[:, 0], crossing=at[:, 1])
+        found += watcher.observe(frame, places_now)
     return found + watcher.finish()
 
 
