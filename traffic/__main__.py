@@ -12,10 +12,13 @@ import typer
 from traffic.commands import (
     benchmark,
     check,
+    chronicles,
+    experiment,
     inspect,
     judge,
     monitor,
     network,
+    recognise,
     recover,
     replay,
     report,
@@ -37,9 +40,12 @@ app.command("run")(run.run)
 app.command("replay")(replay.replay)
 app.command("recover")(recover.recover)
 app.command("report")(report.report)
+app.command("experiment")(experiment.experiment)
 app.command("inspect")(inspect.inspect)
 app.command("judge")(judge.judge)
 app.command("monitor")(monitor.monitor)
+app.command("recognise")(recognise.recognise)
+app.command("chronicles")(chronicles.chronicles)
 app.command("check")(check.check)
 app.add_typer(network.app, name="network")
 app.command("scenarios")(scenarios.scenarios)

@@ -56,6 +56,7 @@ def origin_of(request: RunRequest, files: Iterable[Path] = ()) -> Origin:
             "seed": request.seed,
             "recognise": None if request.recognise is None else ",".join(request.recognise),
             "specification": None if request.specification is None else str(request.specification),
+            "changes": ", ".join(f"{k} = {v}" for k, v in request.changes.items()) or None,
         },
         scenario=request.scenario,
         network=network.resolve(),

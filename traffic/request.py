@@ -1,13 +1,16 @@
 """What a user asks of a run, read from the command line and checked before anything starts."""
 
 import math
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field
 from enum import StrEnum
 from pathlib import Path
+from typing import Any
 
 from dyknow.time import MILLISECOND, Duration, duration_from_text
 from traffic.errors import RequestError
 from traffic.scenarios import CameraSettings, Scenario, find_scenario, scenario_of_configuration
+from traffic.settings import SCENARIO
 
 __all__ = [
     "DEFAULT_PERIOD",
@@ -25,6 +28,19 @@ FRAME_PERIOD = Duration(40 * MILLISECOND)
 """Of the cameras."""
 
 _EVERYTHING = "all"
+_OPTIONS = frozenset(
+    (
+        "duration",
+        "look_at",
+        "position_noise",
+        "recognise",
+        "sample_period",
+        "specification",
+        "view",
+    )
+)
+"""Settings of an experiment that are options of a run."""
+
 _LONGEST_STEP = 100
 _SHORTEST_PERIOD = 10
 _FARTHEST = 1e7
@@ -96,6 +112,7 @@ class RunRequest:
         real_time: Whether to keep to the clock on the wall.
         longest_frame_period: How far apart images may be when the work falls behind that clock.
         recognise: Names of what is to be recognised, such as `turns`; None for everything.
+        changes: New values of settings of the specification (`traffic.settings`), by name.
     """
 
     scenario: Scenario
@@ -110,6 +127,26 @@ class RunRequest:
     real_time: bool = False
     longest_frame_period: Duration = FRAME_PERIOD
     recognise: tuple[str, ...] | None = None
+    changes: Mapping[str, object] = field(default_factory=dict)
+
+    @classmethod
+    def from_settings(
+        cls, scenario: str, settings: Mapping[str, object], *, seed: int, out: Path
+    ) -> "RunRequest":
+        """Return a request with the settings of an experiment.
+
+        Those that are called like options of the command line are these options (`view`,
+        `sample_period`, `position_noise`, `duration`, `recognise`, `look_at`, `specification`),
+        all others are changes, as `--set` makes them.
+
+        Raises:
+            RequestError: A setting is impossible, or has no meaning beside another one.
+            ScenarioError: There is no such scenario, or it has faults.
+        """
+        options = {k: _option(k, v) for k, v in settings.items() if k in _OPTIONS}
+        changes = {k: v for k, v in settings.items() if k not in _OPTIONS}
+        texts: Any = options
+        return cls.from_texts(scenario=scenario, seed=seed, out=out, changes=changes, **texts)
 
     @classmethod
     def from_texts(  # noqa: PLR0913, one for each option of the command
@@ -132,6 +169,7 @@ class RunRequest:
         real_time: bool = False,
         longest_frame_period: str | None = None,
         recognise: str | None = None,
+        changes: Mapping[str, object] | None = None,
     ) -> "RunRequest":
         """Read what a user wrote on the command line.
 
@@ -159,7 +197,8 @@ class RunRequest:
         if seed < 0:
             raise RequestError("--seed", "a number of at least 0", seed)
         period = _period(sample_period, seen)
-        asked = _scenario(scenario, sumocfg).model_copy(
+        wanted = dict(changes or {})
+        asked = _scenario(scenario, sumocfg, wanted).model_copy(
             update={"step_length": FRAME_PERIOD if seen is View.VISION else _step(period)}
         )
         if duration is not None:
@@ -181,6 +220,7 @@ class RunRequest:
             real_time=real_time,
             longest_frame_period=_longest_frame_period(longest_frame_period, real_time=real_time),
             recognise=_recognise(recognise, asked, is_bundled=specification is None),
+            changes={k: v for k, v in wanted.items() if not k.startswith(SCENARIO)},
         )
 
 
@@ -239,13 +279,34 @@ def _check_new_file(path: Path, option: str, ending: str) -> None:
         raise RequestError(option, "a file in a folder that exists", path)
 
 
-def _scenario(name: str | None, sumocfg: Path | None) -> Scenario:
+def _scenario(name: str | None, sumocfg: Path | None, changes: Mapping[str, object]) -> Scenario:
     if (name is None) == (sumocfg is None):
         found = "both" if name is not None else "neither"
         raise RequestError("traffic run", "either a scenario or --sumocfg", found)
+    of_scenario = {
+        key.removeprefix(SCENARIO): value
+        for key, value in changes.items()
+        if key.startswith(SCENARIO)
+    }
     if sumocfg is not None:
+        if of_scenario:
+            expected = "a setting of the specification, because --sumocfg is no scenario"
+            raise RequestError("--set", expected, SCENARIO + next(iter(of_scenario)))
         return scenario_of_configuration(sumocfg)
-    return find_scenario(name or "")
+    return find_scenario(name or "", of_scenario)
+
+
+def _option(name: str, value: object) -> object:
+    """Return the value of an option as the command line has it."""
+    match name, value:
+        case "position_noise", bool() | str():
+            raise RequestError(name, "a number of metres", value)
+        case "position_noise", _:
+            return value
+        case "specification", _:
+            return Path(str(value))
+        case _:
+            return str(value)
 
 
 def _duration(text: str, option: str) -> Duration:

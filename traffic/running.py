@@ -2,16 +2,18 @@
 
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from dataclasses import dataclass
 from pathlib import Path
 
 from dyknow.inspection.taking import snapshot
 from dyknow.kpl.names import Declarations
 from dyknow.kpl.plan import Network
+from dyknow.kpl.printer import text_from
 from dyknow.kpl.syntax import Specification
 from dyknow.source_text import nearest_name
 from dyknow.streams.sample import Sample
 from dyknow.streams.table import Table
-from dyknow.time import MILLISECOND
+from dyknow.time import MILLISECOND, SECOND
 from networks.reading import read_road_map
 from perception.camera import Camera
 from traffic.errors import RequestError
@@ -21,7 +23,8 @@ from traffic.recording.describing import RunDescription
 from traffic.recording.writing import RunRecorder, recorded
 from traffic.request import DEFAULT_PERIOD, FRAME_PERIOD, RunRequest, View
 from traffic.results import RunResult, new_folder, run_folder, write_result
-from traffic.scoring.score import Scorer
+from traffic.scoring.score import Scorer, lines_scored
+from traffic.settings import changed_specification, parameters_in
 from traffic.sumo.opening import network_of, open_simulation
 from traffic.sumo.simulation import Frame, Simulation
 from traffic.system import (
@@ -34,7 +37,7 @@ from traffic.system import (
 from traffic.watching import IMAGES, OnProgress, Watch, told_of
 from traffic.world import World, camera_of, generators_of
 
-__all__ = ["run_scenario", "scorer_for", "write_network"]
+__all__ = ["CheckedRequest", "check_request", "run_scenario", "scorer_for", "write_network"]
 
 _RECOGNITIONS = "recognitions"
 _RECOGNISED = "recognised_"
@@ -50,7 +53,7 @@ def run_scenario(request: RunRequest, on_progress: OnProgress) -> tuple[RunResul
         NetworkError: The network cannot be read.
         SpecificationErrors: The specification that was asked for has faults.
     """
-    specification = read_specification(request.specification)
+    specification = _specification(request)
     road_map = read_road_map(network_of(request.scenario))
     camera = camera_of(request.scenario.camera, road_map) if request.view is View.VISION else None
     traffic, sensors = generators_of(request.seed)
@@ -81,6 +84,43 @@ def run_scenario(request: RunRequest, on_progress: OnProgress) -> tuple[RunResul
     return result, path
 
 
+@dataclass(frozen=True, slots=True)
+class CheckedRequest:
+    """What is known of a run before it begins.
+
+    Attributes:
+        simulated_seconds: How long it is, with its warm-up.
+        files: That it reads: the network, the specification, chronicles.
+        kinds: Of manoeuvres that it scores.
+    """
+
+    simulated_seconds: float
+    files: tuple[Path, ...]
+    kinds: tuple[str, ...]
+
+
+def check_request(request: RunRequest) -> CheckedRequest:
+    """Find out whether a run is possible, as far as that shows before the simulator starts.
+
+    Raises:
+        TrafficError: It is not, or a file cannot be read.
+        NetworkError: The network cannot be read.
+        SpecificationErrors: The specification has faults, or cannot have a new setting.
+    """
+    network = network_of(request.scenario)
+    road_map = read_road_map(network)
+    camera = camera_of(request.scenario.camera, road_map) if request.view is View.VISION else None
+    world = World(road_map, _NoVehicles(), camera, generators_of(request.seed)[1])
+    system = _system(request, _specification(request), world)
+    specification = request.specification or bundled_specification()
+    scenario = request.scenario
+    return CheckedRequest(
+        simulated_seconds=(scenario.warm_up + scenario.duration) / SECOND,
+        files=(network, specification, *system.files),
+        kinds=lines_scored(system.chronicles),
+    )
+
+
 @contextmanager
 def _film(request: RunRequest, camera: Camera | None, watch: Watch) -> Iterator[None]:
     """Film what is believed while the block lasts, if that was asked for.
@@ -98,6 +138,14 @@ def _film(request: RunRequest, camera: Camera | None, watch: Watch) -> Iterator[
         kept = request.overlay
     finally:
         overlay.close(kept)
+
+
+class _NoVehicles:
+    """A source without samples."""
+
+    def samples(self) -> Iterator[Sample[Table]]:
+        """Yield nothing."""
+        yield from ()
 
 
 class _Vehicles:
@@ -128,6 +176,11 @@ def scorer_for(world: World, simulation: Simulation, system: MonitoringSystem) -
 def write_network(network: Network, folder: Path) -> None:
     """Write what the network looks like now into the folder of its run."""
     (folder / "network.json").write_text(snapshot(network).to_json(), encoding="utf-8")
+
+
+def _specification(request: RunRequest) -> Specification:
+    """Return the specification of a run, with the changes that are asked for."""
+    return changed_specification(read_specification(request.specification), request.changes)
 
 
 def _system(request: RunRequest, specification: Specification, world: World) -> MonitoringSystem:
@@ -163,9 +216,11 @@ def _outputs(request: RunRequest, specification: Specification) -> tuple[str, ..
 
 def _description(request: RunRequest, system: MonitoringSystem) -> RunDescription:
     place = request.specification or bundled_specification()
+    written = read_specification(request.specification)
+    is_changed = changed_specification(written, request.changes) != written
     return RunDescription(
         origin=origin_of(request, system.files),
-        text=place.read_text(encoding="utf-8"),
+        text=text_from(system.specification) if is_changed else place.read_text(encoding="utf-8"),
         place=str(place),
         parameters=_parameters(request, system.specification),
         outputs=system.network.outputs,
@@ -212,4 +267,9 @@ def _parameters(request: RunRequest, specification: Specification) -> dict[str, 
         "position_noise": noise,
         "longest_frame_period": longest / MILLISECOND,
     }
-    return {name: value for name, value in values.items() if name in declared}
+    changed = parameters_in(request.changes, specification)
+    for name in changed:
+        if name in values:
+            option = f"--{name.replace('_', '-')}"
+            raise RequestError("--set", f"the option {option} for this parameter", name)
+    return {name: value for name, value in values.items() if name in declared} | changed

@@ -75,6 +75,7 @@ def told_of(origin: Origin) -> Told:
         "sample period ms": int(asked["sample_period_ns"] or 0) / MILLISECOND,
         "position noise m": asked["position_noise"] if asked["view"] == View.TRUTH else None,
         "duration s": scenario.duration / SECOND,
+        "changes": asked.get("changes"),
     }
     return Told(scenario.name, settings, scenario.duration, scenario.step_length)
 

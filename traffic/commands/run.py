@@ -62,6 +62,14 @@ def run(
     specification: Annotated[
         Path | None, typer.Option(help="Network of processes (.kpl); default: the bundled one.")
     ] = None,
+    changes: Annotated[
+        list[str] | None,
+        typer.Option(
+            "--set",
+            metavar="NAME=VALUE",
+            help="Change a parameter or setting of the specification, or 'scenario.PATH'.",
+        ),
+    ] = None,
     real_time: Annotated[
         bool, typer.Option("--real-time", help="Keep to the clock on the wall; same results.")
     ] = False,
@@ -74,6 +82,7 @@ def run(
     from traffic.commands.showing import progress, show_result
     from traffic.request import RunRequest
     from traffic.running import run_scenario
+    from traffic.settings import change_from_text
 
     request = RunRequest.from_texts(
         scenario=scenario,
@@ -93,6 +102,7 @@ def run(
         real_time=real_time,
         longest_frame_period=longest_frame_period,
         recognise=recognise,
+        changes=dict(map(change_from_text, changes or ())),
     )
     with progress() as on_progress:
         result, folder = run_scenario(request, on_progress)

@@ -4,7 +4,7 @@ import gzip
 import html
 import re
 import zlib
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from pathlib import Path
 
 from pydantic import ValidationError
@@ -15,6 +15,7 @@ from dyknow.time import MINUTE, Duration
 from traffic.bundled import data_folder
 from traffic.errors import ScenarioError
 from traffic.scenarios.acts import ACTS
+from traffic.scenarios.changing import put_all
 from traffic.scenarios.fields import Settings
 from traffic.scenarios.model import (
     CameraSettings,
@@ -43,30 +44,40 @@ def bundled_scenarios() -> tuple[Scenario, ...]:
     return tuple(read_scenario(path) for path in _bundled_paths().values())
 
 
-def find_scenario(name: str) -> Scenario:
+def find_scenario(name: str, changes: Mapping[str, object] | None = None) -> Scenario:
     """Return the bundled scenario of that name, or read the file of that path.
+
+    Args:
+        name: Name or path.
+        changes: New values of some of its settings, by path (`traffic.settings`).
 
     Raises:
         ScenarioError: There is neither, or the file has faults.
     """
     bundled = _bundled_paths()
     if name in bundled:
-        return read_scenario(bundled[name])
+        return read_scenario(bundled[name], changes)
     if name.endswith(".toml") or Path(name).is_file():
-        return read_scenario(Path(name))
+        return read_scenario(Path(name), changes)
     nearest = nearest_name(name, bundled)
     hint = f"; did you mean '{nearest}'?" if nearest else ""
     known = ", ".join(bundled)
     raise ScenarioError(f"no scenario called '{name}'{hint} (there are {known}, or a .toml file)")
 
 
-def read_scenario(path: Path) -> Scenario:
+def read_scenario(path: Path, changes: Mapping[str, object] | None = None) -> Scenario:
     """Read a scenario from a file.
+
+    Args:
+        path: The file.
+        changes: New values of some of its settings, by path (`traffic.scenarios.changing`).
 
     Raises:
         ScenarioError: The file cannot be read or has faults; all of them are named.
+        RequestError: A change is about something that is not there.
     """
     source, values = read_toml(path, ScenarioError)
+    changed = put_all(changes or {}, values)
     if "name" in values:
         found_name = [("the name of a scenario is that of its file", ("name",))]
         raise ScenarioError(*faults_of(found_name, source))
@@ -75,9 +86,12 @@ def read_scenario(path: Path) -> Scenario:
             {"name": path.stem, **values}, context={"folder": path.parent}
         )
     except ValidationError as error:
-        found = (_fault(detail) for detail in error.errors())
+        found = [_fault(detail) for detail in error.errors()]
+        _raise_for_changes(found, changed)
         raise ScenarioError(*faults_of(found, source)) from error
-    faults = faults_of(_misplaced_names(scenario), source)
+    misplaced = list(_misplaced_names(scenario))
+    _raise_for_changes(misplaced, changed)
+    faults = faults_of(misplaced, source)
     if faults:
         raise ScenarioError(*faults)
     return scenario
@@ -96,6 +110,20 @@ def scenario_of_configuration(path: Path, duration: Duration = MINUTE) -> Scenar
 
 def _bundled_paths() -> dict[str, Path]:
     return {path.stem: path for path in sorted((data_folder() / "scenarios").glob("*.toml"))}
+
+
+def _raise_for_changes(
+    found: Iterable[tuple[str, KeyPath]], changed: Mapping[KeyPath, str]
+) -> None:
+    """Blame the changes if a fault is where something was changed: the file does not say that."""
+    faults = [
+        f"--set {name}: {message}"
+        for message, path in found
+        for place, name in changed.items()
+        if path[: len(place)] == place or place[: len(path)] == path
+    ]
+    if faults:
+        raise ScenarioError(*faults)
 
 
 def _fault(detail: ErrorDetails) -> tuple[str, KeyPath]:

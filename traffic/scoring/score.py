@@ -20,7 +20,7 @@ from traffic.truth.ground_truth import GroundTruth
 from traffic.truth.manoeuvres import TrueManoeuvre
 from traffic.truth.watchers import WATCHERS
 
-__all__ = ["Scorer", "Verdict", "unjudged"]
+__all__ = ["Scorer", "Verdict", "lines_scored", "unjudged"]
 
 Points = npt.NDArray[np.float64]
 
@@ -39,6 +39,13 @@ class Verdict:
     recognitions: list[RecognitionResult]
     missed: list[Manoeuvre]
     score: dict[str, Score]
+
+
+def lines_scored(chronicles: Collection[str]) -> tuple[str, ...]:
+    """Return the lines of the score of runs that may recognise *chronicles*."""
+    claimed = kinds_claimed(chronicles)
+    lines = [each.score or kind for kind, each in WATCHERS.items() if kind in claimed]
+    return tuple(dict.fromkeys(lines))
 
 
 class Scorer:

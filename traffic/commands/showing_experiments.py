@@ -1,0 +1,143 @@
+"""Tables and the progress bar of experiments."""
+
+import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
+
+from pydantic_core import to_json
+from rich.box import SIMPLE_HEAD
+from rich.console import Console
+from rich.markup import escape
+from rich.progress import BarColumn, TextColumn
+from rich.progress import Progress as Bar
+from rich.table import Table
+
+from traffic.experiments.conducting import OnProgress, Progress
+from traffic.experiments.estimating import Estimate
+from traffic.experiments.measures import Share
+from traffic.experiments.reading import bundled_designs, read_design
+from traffic.experiments.running import Experiment
+
+__all__ = [
+    "experiment_progress",
+    "json_from_experiment",
+    "show_designs",
+    "show_estimate",
+    "show_experiment",
+]
+
+_MOST_ERRORS = 10
+_ENOUGH = 100
+"""From so many of a unit of time on, the next larger one is told."""
+
+
+@contextmanager
+def experiment_progress() -> Iterator[OnProgress]:
+    """Give a function to call with how far an experiment has come, shown on a terminal."""
+    columns = (TextColumn("running"), BarColumn(), TextColumn("{task.fields[told]}"))
+    console = Console(stderr=True)
+    with Bar(*columns, console=console, disable=not sys.stderr.isatty()) as bar:
+        task = bar.add_task("", told="")
+
+        def on_progress(progress: Progress) -> None:
+            bar.update(task, completed=progress.done, total=progress.total, told=_told(progress))
+
+        yield on_progress
+
+
+def show_designs() -> None:
+    """Print the designs that come with the program."""
+    table = Table("design", "runs", "what", box=SIMPLE_HEAD)
+    for name, path in bundled_designs().items():
+        design = read_design(path)
+        table.add_row(escape(name), f"{design.n_runs:,}", escape(design.description))
+    Console().print(table)
+
+
+def show_estimate(estimate: Estimate) -> None:
+    """Print how many runs there are and how long they may take."""
+    Console().print(
+        f"{estimate.runs:,} runs of {_time(estimate.simulated_seconds)} simulated time in all, "
+        + (
+            f"about {_time(estimate.seconds)} here"
+            if estimate.seconds is not None
+            else f"of which the first fails: {escape(estimate.error or '')}"
+        ),
+        highlight=False,
+    )
+
+
+def show_experiment(experiment: Experiment) -> None:
+    """Print the measures of all cells, with the intervals that they lie in."""
+    design = experiment.design
+    measures = [escape(measure) for measure in design.measures]
+    caption = "in brackets, where the truth lies with a confidence of 95 % (Wilson)"
+    table = Table(
+        *map(escape, design.varying), "runs", "failed", *measures, box=SIMPLE_HEAD, caption=caption
+    )
+    for cell in experiment.cells:
+        levels = [escape(str(cell.cell[name])) for name in design.varying]
+        shares = [_share(cell.shares[measure]) for measure in design.measures]
+        table.add_row(*levels, str(cell.runs), str(cell.failed or ""), *shares)
+    console = Console()
+    console.print(f"[bold]{escape(design.name)}[/]: {escape(design.description)}", highlight=False)
+    console.print(table)
+    for error in experiment.errors[:_MOST_ERRORS]:
+        console.print(f"[red]failed[/]: {escape(error)}", highlight=False)
+    if len(experiment.errors) > _MOST_ERRORS:
+        console.print(f"and {len(experiment.errors) - _MOST_ERRORS} more", highlight=False)
+
+
+def json_from_experiment(experiment: Experiment) -> str:
+    """Return an experiment as one JSON document."""
+    cells = [
+        {
+            "cell": dict(cell.cell),
+            "runs": cell.runs,
+            "failed": cell.failed,
+            "measures": {name: _json_from_share(each) for name, each in cell.shares.items()},
+        }
+        for cell in experiment.cells
+    ]
+    design = experiment.design
+    document = {
+        "design": design.name,
+        "description": design.description,
+        "fixed": design.fixed,
+        "runs_per_cell": design.runs_per_cell,
+        "versions": experiment.versions,
+        "cells": cells,
+        "errors": experiment.errors,
+    }
+    return to_json(document, indent=1).decode()
+
+
+def _json_from_share(share: Share) -> dict[str, float | int | None]:
+    low, high = share.interval
+    counts = share._asdict()
+    return {**counts, "value": share.value, "low": low, "high": high}
+
+
+def _share(share: Share) -> str:
+    if share.value is None:
+        return "[dim]–[/]"
+    low, high = share.interval
+    return f"{share.value:.1%} [dim]({low:.0%}–{high:.0%})[/]"
+
+
+def _told(progress: Progress) -> str:
+    failed = f", {progress.failed} failed" if progress.failed else ""
+    left = progress.seconds_left
+    time_left = "" if left is None else f", {_time(left)} left"
+    rate = "" if progress.rate is None else f", {progress.rate:.1f} a second"
+    return (
+        f"{progress.done} of {progress.total} done{failed}, {progress.running} running"
+        f"{rate}{time_left}"
+    )
+
+
+def _time(seconds: float) -> str:
+    if seconds < _ENOUGH:
+        return f"{seconds:.0f} s"
+    minutes = seconds / 60
+    return f"{minutes:.0f} min" if minutes < _ENOUGH else f"{minutes / 60:.1f} h"

@@ -1,0 +1,10 @@
+"""Experiments: the same run again and again with other settings, on many processes.
+
+Read in this order: `designs` (which runs an experiment consists of), `reading` (from TOML files,
+with every fault), `cases` (one run of an experiment: from settings to counts), `journal` (finished
+runs, durable one by one), `folders` (where an experiment is written), `engine` (who does the
+runs: processes of this machine or a cluster), `conducting` (an experiment from its beginning, or
+where it was cut off, to its end), `estimating` (how long it will take), `measures` (what is
+asked of the runs of a cell), `intervals` (how sure a share is), `tables` (all runs, and the
+measures of all cells), `comparing` (two experiments, or two groups of runs).
+"""

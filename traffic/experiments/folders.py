@@ -1,0 +1,175 @@
+"""Where an experiment is written: a folder that grows while runs finish.
+
+`design.toml` is the design as it was written, `experiment.json` what its runs depend on besides,
+`runs.jsonl` the finished runs. When all are done, `runs.parquet` and `cells.csv` are made of them.
+A folder belongs to one design and one version of the program, for good.
+"""
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+from pathlib import Path
+
+from pydantic import BaseModel, ConfigDict, ValidationError
+
+from traffic.errors import ExperimentError
+from traffic.experiments.cases import Outcome
+from traffic.experiments.journal import read_lines
+from traffic.origin import digest_of, versions
+
+__all__ = ["Basis", "ExperimentFolder", "basis_of", "write_whole"]
+
+_FORMAT = 1
+
+
+class Basis(BaseModel):
+    """What the runs of an experiment depend on.
+
+    Attributes:
+        format: Version of the folder's format.
+        design_sha256: Digest of the text of the design.
+        versions: Of this program, of Python, and of what results may depend on.
+        files_sha256: Digests of the scenarios, networks, specifications and chronicles that are
+            read, by path.
+    """
+
+    model_config = ConfigDict(extra="forbid", frozen=True)
+
+    format: int = _FORMAT
+    design_sha256: str
+    versions: dict[str, str]
+    files_sha256: dict[str, str]
+
+    def difference(self, other: "Basis") -> str | None:
+        """Return what is not the same in the other one; None if everything is."""
+        if self.format != other.format:
+            return f"the format of the folder ({self.format}, now {other.format})"
+        if self.design_sha256 != other.design_sha256:
+            return "the design"
+        for name, version in other.versions.items():
+            if (was := self.versions.get(name)) != version:
+                return f"the version of {name} ({was}, now {version})"
+        paths = self.files_sha256.keys() | other.files_sha256.keys()
+        for path in sorted(paths):
+            if self.files_sha256.get(path) != other.files_sha256.get(path):
+                return f"the file '{path}'"
+        return None
+
+
+def basis_of(design: Path, files: Iterable[Path]) -> Basis:
+    """Return what runs of a design that read *files* depend on."""
+    return Basis(
+        design_sha256=digest_of(design),
+        versions=versions(),
+        files_sha256={str(path): digest_of(path) for path in files},
+    )
+
+
+@dataclass(frozen=True, slots=True)
+class ExperimentFolder:
+    """The folder of an experiment.
+
+    Attributes:
+        path: Of the folder.
+    """
+
+    path: Path
+
+    @property
+    def design(self) -> Path:
+        """The design as it was written."""
+        return self.path / "design.toml"
+
+    @property
+    def journal(self) -> Path:
+        """The finished runs, in the order in which they finished."""
+        return self.path / "runs.jsonl"
+
+    @property
+    def runs(self) -> Path:
+        """The table of all runs; there when all are done."""
+        return self.path / "runs.parquet"
+
+    @property
+    def cells(self) -> Path:
+        """The measures of all cells; there when all are done."""
+        return self.path / "cells.csv"
+
+    def begin(self, design: Path, basis: Basis) -> None:
+        """Make the folder.
+
+        Raises:
+            ExperimentError: There is one already, or it cannot be made.
+        """
+        try:
+            self.path.mkdir(parents=True)
+            text = design.read_text(encoding="utf-8")
+            write_whole(self.design, text.encode())
+            write_whole(self._basis_file, basis.model_dump_json(indent=1).encode() + b"\n")
+        except FileExistsError as error:
+            fault = f"'{self.path}' exists already; --resume goes on with what is there"
+            raise ExperimentError(fault) from error
+        except OSError as error:
+            raise ExperimentError(f"cannot write to '{self.path}': {error.strerror}") from error
+
+    def resume(self, basis: Basis) -> None:
+        """Make sure that runs with this basis may be added to those that are there.
+
+        Raises:
+            ExperimentError: There is no experiment, or it has another basis.
+        """
+        different = self.basis().difference(basis)
+        if different is not None:
+            fault = (
+                f"'{self.path}' cannot be resumed: {different} is not what it was when its runs "
+                "were made, and runs of two kinds are not put into one table"
+            )
+            raise ExperimentError(fault)
+
+    def basis(self) -> Basis:
+        """Return what the runs that are there depend on.
+
+        Raises:
+            ExperimentError: There is no experiment, or its file is damaged.
+        """
+        try:
+            return Basis.model_validate_json(self._basis_file.read_text(encoding="utf-8"))
+        except OSError as error:
+            fault = f"'{self.path}' holds no experiment: {error.strerror}"
+            raise ExperimentError(fault) from error
+        except (ValidationError, UnicodeDecodeError) as error:
+            raise ExperimentError(f"'{self._basis_file}' is damaged: {error}") from error
+
+    def outcomes(self) -> dict[str, Outcome]:
+        """Return the finished runs by key; of two of one key, the one that finished first.
+
+        Raises:
+            ExperimentError: A line of the journal is damaged.
+        """
+        found: dict[str, Outcome] = {}
+        if not self.journal.exists():
+            return found
+        for number, line in enumerate(read_lines(self.journal), start=1):
+            try:
+                outcome = Outcome.from_line(line)
+            except ValueError as error:
+                raise ExperimentError(f"{self.journal}:{number}: {error}") from error
+            found.setdefault(outcome.key, outcome)
+        return found
+
+    @property
+    def _basis_file(self) -> Path:
+        return self.path / "experiment.json"
+
+
+def write_whole(path: Path, content: bytes) -> None:
+    """Write a file so that it is there whole or not at all.
+
+    Raises:
+        OSError: It cannot be written.
+    """
+    partial = path.with_name(f"{path.name}.partial")
+    try:
+        partial.write_bytes(content)
+        partial.replace(path)
+    finally:
+        partial.unlink(missing_ok=True)
