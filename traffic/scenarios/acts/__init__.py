@@ -1,8 +1,8 @@
 """Acts: what drivers do on purpose, so that there is something to recognise.
 
 Read in this order: `base` (what all acts have in common), then the families: `driving` (at a
-speed; halting). A new kind is a class in its family's module and a line in `ACTS` and `AnyAct`
-here, and a performance in `traffic.sumo.acts`.
+speed; halting), `weaving` (swaying, and going around something). A new kind is a class in its
+family's module and a line in `ACTS` and `AnyAct` here, and a performance in `traffic.sumo.acts`.
 """
 
 from collections.abc import Mapping
@@ -12,11 +12,12 @@ from pydantic import Field
 
 from traffic.scenarios.acts.base import Act
 from traffic.scenarios.acts.driving import Drive, Halt
+from traffic.scenarios.acts.weaving import Swerve, Weave
 
 __all__ = ["ACTS", "Act", "AnyAct"]
 
 AnyAct = Annotated[
-    Drive | Halt,
+    Drive | Halt | Weave | Swerve,
     Field(discriminator="kind"),
 ]
 """One of the acts, told apart by its `kind`."""
@@ -24,5 +25,7 @@ AnyAct = Annotated[
 ACTS: Mapping[str, type[Act]] = {
     "drive": Drive,
     "halt": Halt,
+    "weave": Weave,
+    "swerve": Swerve,
 }
 """The class of each kind."""

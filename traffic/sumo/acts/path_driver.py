@@ -14,6 +14,12 @@ _ANYWHERE = 2
 _SLOWEST = 0.05
 """m/s; below it the vehicle keeps its angle."""
 
+_SIGHT = 100.0
+"""Metres in which a driver minds who is ahead."""
+
+_LEAST_GAP = 1.0
+"""Metres between bumpers that are left when both stand, beside SUMO's own."""
+
 
 class PathDriver:
     """Moves one vehicle along a path, to the side of it if wanted, in place of SUMO.
@@ -48,6 +54,20 @@ class PathDriver:
     def is_at_end(self) -> bool:
         """Whether the path has been driven to its end."""
         return self.s >= self.path.length
+
+    def safe_speed(self, braking: float) -> float:
+        """Return the highest speed at which the vehicle can stop behind whoever is ahead.
+
+        Args:
+            braking: How hard it would brake, m/s²; it needs a second before it does.
+        """
+        ahead = self._stage.api.vehicle.getLeader(self._native.vehicle, _SIGHT)
+        if ahead is None or not ahead[0]:
+            return np.inf
+        leader, gap = ahead
+        others = float(self._stage.api.vehicle.getSpeed(leader))
+        room = max(0.0, gap - _LEAST_GAP)
+        return float(np.sqrt(braking**2 + others**2 + 2 * braking * room)) - braking
 
     def move(self, speed: float, aside: float = 0.0) -> None:
         """Let the coming step bring the vehicle further along the path.

@@ -8,9 +8,11 @@ import numpy as np
 
 from traffic.scenarios.acts import Act
 from traffic.scenarios.acts.driving import Drive, Halt
+from traffic.scenarios.acts.weaving import Swerve, Weave
 from traffic.sumo.acts.driving import drive, halt
 from traffic.sumo.acts.performance import Performance, Script
 from traffic.sumo.acts.stage import Stage
+from traffic.sumo.acts.weaving import swerve, weave
 
 __all__ = ["Perform", "performance_of"]
 
@@ -31,4 +33,6 @@ def _script(play: Callable[..., Any]) -> Perform:
 _PERFORM: Mapping[type[Act], Perform] = {
     Drive: _script(drive),
     Halt: _script(halt),
+    Weave: _script(weave),
+    Swerve: _script(swerve),
 }
