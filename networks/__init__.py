@@ -3,8 +3,9 @@
 Read in this order: `geometry` (polylines), `parts` (a network in plain parts), `stretches` and
 `topology` (which junctions are crossings, which edges make a link), `graph` (directed roads),
 `turns` (left, right, straight, back), `links` (positions along links), `regions` (areas),
-`markings`, `roads` (the `RoadMap`), `ahead` (what is ahead of what), `assembling` (from parts to
-map), `checking` and `reading` (SUMO networks), `building` (made-up ones), `errors`.
+`markings`, `signals` (where traffic lights are), `roads` (the `RoadMap`), `ahead` (what is ahead
+of what), `assembling` (from parts to map), `checking` and `reading` (SUMO networks), `building`
+(made-up ones), `errors`.
 """
 
 from networks.ahead import RoadsAhead
@@ -13,6 +14,7 @@ from networks.markings import Marking, MarkingKind
 from networks.reading import read_road_map
 from networks.regions import Places
 from networks.roads import Moved, RoadMap
+from networks.signals import Signals, SignalState
 from networks.turns import Turn
 
 __all__ = [
@@ -24,6 +26,8 @@ __all__ = [
     "Places",
     "RoadMap",
     "RoadsAhead",
+    "SignalState",
+    "Signals",
     "Turn",
     "UnknownPlaceError",
     "read_road_map",

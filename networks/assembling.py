@@ -22,6 +22,7 @@ from networks.markings import markings_of
 from networks.parts import Connection, Lane, NetworkParts
 from networks.regions import NONE, Areas, strip, united
 from networks.roads import Lanes, RoadMap
+from networks.signals import Signals, signals_of
 from networks.topology import Topology, topology_of
 from networks.turns import turns_of
 
@@ -63,6 +64,7 @@ def road_map_from_parts(parts: NetworkParts) -> RoadMap:
         crossing_of_junction=topology.crossing_of_junction,
         turns=turns_of(graph),
         markings=markings_of(parts),
+        signals=_signals(parts, topology, graph, lanes),
         left_hand=parts.left_hand,
     )
 
@@ -163,6 +165,15 @@ def _lanes(parts: NetworkParts, ways: list[_Way]) -> Lanes:
         road=np.repeat(np.arange(len(of_road), dtype=np.int32), [len(m) for m in of_road]),
         opposite=np.array([index.get(lane.opposite or "", NONE) for lane in lanes], np.int32),
     )
+
+
+def _signals(parts: NetworkParts, topology: Topology, graph: RoadGraph, lanes: Lanes) -> Signals:
+    """Return where signals are; only lanes of edges can have one."""
+    ends = [parts.edges[name].end for name in graph.names[: graph.edge_count]]
+    ahead = [topology.crossing_of_junction.get(junction, NONE) for junction in ends]
+    crossing = np.full(len(graph.names), NONE, dtype=np.int32)
+    crossing[: graph.edge_count] = ahead
+    return signals_of(parts, lanes.names, lanes.lines, crossing[lanes.road])
 
 
 def _areas(parts: NetworkParts, topology: Topology, graph: RoadGraph, lanes: Lanes) -> Areas:

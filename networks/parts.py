@@ -70,12 +70,16 @@ class Connection:
         to_edge: The edge that is entered.
         lanes: The lanes inside the junction, in the order of travel; none if the file has none.
         edge_ids: The names that the file gives to the edges of these lanes.
+        from_lane: The lane that is left.
+        is_controlled: Whether a traffic light says when one may go.
     """
 
     from_edge: str
     to_edge: str
     lanes: tuple[Lane, ...] = ()
     edge_ids: tuple[str, ...] = ()
+    from_lane: str = ""
+    is_controlled: bool = False
 
     def line(self) -> Points | None:
         """Return the centre line of the lanes, one behind the other, or None without lanes."""

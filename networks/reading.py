@@ -116,6 +116,8 @@ def _connections(net: Any, edges: list[Any], usable: Mapping[str, Edge]) -> Iter
                         to_edge.getID(),
                         tuple(_lane(lane) for lane in inside if _has_length(lane)),
                         tuple(lane.getEdge().getID() for lane in inside),
+                        connection.getFromLane().getID(),
+                        bool(connection.getTLSID()),
                     )
 
 

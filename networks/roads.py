@@ -23,6 +23,7 @@ from networks.graph import RoadGraph
 from networks.links import LinkPositions
 from networks.markings import Marking
 from networks.regions import NONE, Areas, Places, outlines
+from networks.signals import Signals
 from networks.turns import Turn, Turns
 
 __all__ = ["Lanes", "Moved", "RoadMap"]
@@ -84,6 +85,7 @@ class RoadMap:
         crossing_of_junction: From the id of a junction to the crossing of which it is part.
         turns: From (link, crossing, link) to the way one turns.
         markings: What is painted on the roads.
+        signals: Where traffic lights are.
         left_hand: Whether one drives on the left.
     """
 
@@ -98,6 +100,7 @@ class RoadMap:
     crossing_of_junction: Mapping[str, int]
     turns: Turns
     markings: tuple[Marking, ...]
+    signals: Signals
     left_hand: bool
 
     def __repr__(self) -> str:
