@@ -24,7 +24,7 @@ class CountedEvents:
 
     def __init__(self, counter: Counter) -> None:
         self._counter = counter
-        self._times: dict[Values | str, list[int]] = {}
+        self._times: dict[Values, list[int]] = {}
         self.n_times = 0
         self._full = _LEAST_TO_SWEEP
 
@@ -33,7 +33,7 @@ class CountedEvents:
         """Whether it is time to forget what nothing can ask for any more."""
         return self.n_times >= self._full
 
-    def add(self, key: Values | str, time: int) -> None:
+    def add(self, key: Values, time: int) -> None:
         """Note an event; times come in order."""
         times = self._times.get(key)
         if times is None:
@@ -42,14 +42,14 @@ class CountedEvents:
             times.append(time)
         self.n_times += 1
 
-    def count(self, key: Values | str, begin: int, end: int) -> int:
+    def count(self, key: Values, begin: int, end: int) -> int:
         """Return the number of events from *begin* up to but not at *end*."""
         times = self._times.get(key)
         if times is None or end <= begin:
             return 0
         return bisect_left(times, end) - bisect_left(times, begin)
 
-    def nth(self, key: Values | str, begin: int, n: int) -> int | None:
+    def nth(self, key: Values, begin: int, n: int) -> int | None:
         """Return the time of the event after *n* others from *begin* on, if it has come."""
         times = self._times.get(key)
         if times is None:

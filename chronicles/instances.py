@@ -12,9 +12,9 @@ from heapq import heapify, heappop, heappush
 from chronicles.constraints import NEVER
 from chronicles.events import Event
 from chronicles.models import Counter, Model
-from chronicles.patterns import Values, key_of
+from chronicles.patterns import Values, projection
 
-__all__ = ["Agenda", "Bucket", "Index", "Instance", "Stage", "Watch"]
+__all__ = ["Agenda", "Bucket", "Index", "Instance", "Key", "Stage", "Watch"]
 
 
 class Instance:
@@ -51,10 +51,13 @@ class Instance:
 Bucket = dict[Instance, None]
 """A set of instances that keeps the order in which they came."""
 
-Index = dict[Values | str, Bucket]
+Index = dict[Values, Bucket]
 """Instances by the values of some of their variables."""
 
-_Key = Callable[[Values], Values | str]
+Key = Callable[[Values], Values]
+"""From the values of an instance to those that it is found by."""
+
+_Entry = tuple[Index, Key | None]
 _Change = Callable[[Instance], None]
 
 
@@ -65,14 +68,18 @@ class Watch:
     Attributes:
         counter: The counter.
         index: The instances that watch it, by the values of its variables.
-        key: From the values of an instance to its key in the index.
+        key: From the values of an instance to its key in the index; None if they are the same.
         end_known: Whether the slot at which the interval ends is filled at this stage.
     """
 
     counter: Counter
     index: Index
-    key: _Key
+    key: Key | None
     end_known: bool
+
+    def key_of(self, instance: Instance) -> Values:
+        """Return the values by which *instance* is found."""
+        return self.key(instance.values) if self.key else instance.values
 
 
 class Stage:
@@ -89,7 +96,7 @@ class Stage:
         is_complete: Whether no slot is open.
         variables: The variables of the filled slots.
         watches: The counters whose events matter to these instances.
-        add: Takes in an instance.
+        add: Takes in an instance; there is none before `seal`.
         remove: Forgets an instance and every entry about it.
         admit: Decides about a new instance; set by whom the stage belongs to.
         review: Decides about an instance that is due at a time; set likewise.
@@ -109,11 +116,12 @@ class Stage:
         self.is_complete = not self.open
         bound = {name for i in self.filled for name in slots[i].pattern.variables}
         self.variables = tuple(name for name in model.variables if name in bound)
-        self.add: _Change = self._add_first
-        self.remove: _Change = _nothing_to_remove
+        self.add: _Change
+        self.remove: _Change
+        self._is_sealed = False
         self.admit: Callable[[Instance, int], None]
         self.review: Callable[[Instance, int], None]
-        self._indexes: dict[tuple[str, ...], tuple[Index, _Key]] = {}
+        self._indexes: dict[tuple[str, ...], _Entry] = {}
         self.watches = tuple(
             self._watch(counter)
             for counter in model.counters
@@ -129,11 +137,11 @@ class Stage:
     def index_by(self, variables: tuple[str, ...]) -> Index:
         """Return the index of the instances by the values of *variables*.
 
-        It is made when it is first asked for, which must be before the first instance comes.
+        It is made when it is first asked for, which must be before `seal`.
         """
         if variables not in self._indexes:
-            assert self.remove is _nothing_to_remove
-            self._indexes[variables] = {}, key_of(self.variables, variables)
+            assert not self._is_sealed
+            self._indexes[variables] = {}, projection(self.variables, variables)
         return self._indexes[variables][0]
 
     def members(self) -> Iterator[Instance]:
@@ -146,15 +154,16 @@ class Stage:
     def _watch(self, counter: Counter) -> Watch:
         variables = counter.pattern.variables
         index = self.index_by(variables)
-        return Watch(counter, index, key_of(self.variables, variables), self.knows(counter.end))
+        key = projection(self.variables, variables)
+        return Watch(counter, index, key, self.knows(counter.end))
 
-    def _add_first(self, instance: Instance) -> None:
-        """Take in the first instance: from now on there are no more indexes."""
+    def seal(self) -> None:
+        """Make ready for the first instance: all indexes have been asked for."""
         if not self._indexes:
             self.index_by(())
+        self._is_sealed = True
         entries = tuple(self._indexes.values())
         self.add, self.remove = _adder(entries), _remover(entries)
-        self.add(instance)
 
 
 class Agenda:
@@ -231,11 +240,7 @@ class Agenda:
         self._n_stale = 0
 
 
-def _nothing_to_remove(instance: Instance) -> None:
-    raise ValueError(f"{instance} is at no stage")
-
-
-def _adder(entries: tuple[tuple[Index, _Key], ...]) -> _Change:
+def _adder(entries: tuple[_Entry, ...]) -> _Change:
     if len(entries) > 1:
         adders = [_adder((entry,)) for entry in entries]
 
@@ -247,7 +252,7 @@ def _adder(entries: tuple[tuple[Index, _Key], ...]) -> _Change:
     ((index, key_from),) = entries
 
     def add(instance: Instance) -> None:
-        key = key_from(instance.values)
+        key = key_from(instance.values) if key_from else instance.values
         bucket = index.get(key)
         if bucket is None:
             index[key] = {instance: None}
@@ -257,7 +262,7 @@ def _adder(entries: tuple[tuple[Index, _Key], ...]) -> _Change:
     return add
 
 
-def _remover(entries: tuple[tuple[Index, _Key], ...]) -> _Change:
+def _remover(entries: tuple[_Entry, ...]) -> _Change:
     if len(entries) > 1:
         removers = [_remover((entry,)) for entry in entries]
 
@@ -269,7 +274,7 @@ def _remover(entries: tuple[tuple[Index, _Key], ...]) -> _Change:
     ((index, key_from),) = entries
 
     def remove(instance: Instance) -> None:
-        key = key_from(instance.values)
+        key = key_from(instance.values) if key_from else instance.values
         bucket = index[key]
         if len(bucket) > 1:
             del bucket[instance]

@@ -20,7 +20,7 @@ from chronicles.constraints import NEVER, UNBOUNDED
 from chronicles.events import Event
 from chronicles.instances import Instance, Stage
 from chronicles.models import Model, Slot
-from chronicles.patterns import Values, key_of, projection
+from chronicles.patterns import Values, projection
 
 __all__ = ["Joiner", "Recipe"]
 
@@ -149,33 +149,57 @@ class Joiner:
     def _going_on(self, slot: Slot, part: Stage) -> Recipe:
         """Return the recipe for an event that joins one instance, the usual case."""
         at = slot.index
+        shared = _shared(slot, part)
+        index = part.index_by(shared)
+        key = projection(slot.pattern.variables, shared)
+        pauses = self._pauses(slot, part)
+        join = self._extension(slot, part)
+
+        def go_on(event: Event, now: int, values: Values) -> None:
+            bucket = index.get(key(values) if key else values)
+            if bucket is None:
+                return
+            for instance in bucket:
+                if now > instance.latest[at]:
+                    continue
+                for i, pause in pauses:
+                    if now - instance.times[i] < pause:
+                        break
+                else:
+                    join(instance, event, now, values)
+
+        return go_on
+
+    def _extension(
+        self, slot: Slot, part: Stage
+    ) -> Callable[[Instance, Event, int, Values], None]:
+        """Return what makes the instance that an event and one that it fits to are together."""
+        at = slot.index
         mask = part.mask | 1 << at
-        find = self._finder(slot, part)
         reach = self._reach(slot, part.filled)
         combine = self._combination(slot, part)
         allows = self._restriction(mask, (part,))
         stage: Stage | None = None
 
-        def go_on(event: Event, now: int, values: Values) -> None:
+        def extend(instance: Instance, event: Event, now: int, values: Values) -> None:
             nonlocal stage
-            for instance in find(now, values):
-                arranged = combine(instance.values, values) if combine else instance.values
-                if allows is not None and not allows(arranged):
-                    continue
-                latest = instance.latest
-                if reach:
-                    latest = latest.copy()
-                    for j, limit in reach:
-                        latest[j] = min(latest[j], now + limit)
-                times = instance.times.copy()
-                times[at] = now
-                events = instance.events.copy()
-                events[at] = event
-                if stage is None:
-                    stage = self._stage(mask)
-                stage.admit(Instance(stage, arranged, times, events, latest), now)
+            arranged = combine(instance.values, values) if combine else instance.values
+            if allows is not None and not allows(arranged):
+                return
+            latest = instance.latest
+            if reach:
+                latest = latest.copy()
+                for j, limit in reach:
+                    latest[j] = min(latest[j], now + limit)
+            times = instance.times.copy()
+            times[at] = now
+            events = instance.events.copy()
+            events[at] = event
+            if stage is None:
+                stage = self._stage(mask)
+            stage.admit(Instance(stage, arranged, times, events, latest), now)
 
-        return go_on
+        return extend
 
     def _combination(self, slot: Slot, part: Stage) -> Callable[[Values, Values], Values] | None:
         """Return what puts the values of an instance and of an event together.
@@ -195,11 +219,11 @@ class Joiner:
         at = slot.index
         shared = _shared(slot, part)
         index = part.index_by(shared)
-        key = key_of(slot.pattern.variables, shared)
+        key = projection(slot.pattern.variables, shared)
         pauses = self._pauses(slot, part)
 
         def find(now: int, values: Values) -> Iterable[Instance]:
-            bucket = index.get(key(values))
+            bucket = index.get(key(values) if key else values)
             if bucket is None:
                 return ()
             found = [instance for instance in bucket if now <= instance.latest[at]]

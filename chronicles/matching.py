@@ -7,8 +7,9 @@ instance die when the clock has passed one of them. Without this, instances woul
 their last event comes, only to be refused.
 """
 
-import sys
 from collections.abc import Callable, Iterable, Iterator, Sequence
+from dataclasses import dataclass
+from functools import partial
 from operator import itemgetter
 
 from chronicles.constraints import INSTANT, NEVER, UNBOUNDED
@@ -17,15 +18,32 @@ from chronicles.events import Event
 from chronicles.instances import Agenda, Instance, Stage, Watch
 from chronicles.joining import Joiner, Recipe
 from chronicles.models import Counter, Model, Slot
-from chronicles.patterns import Values, key_of
+from chronicles.patterns import Values
 
-__all__ = ["Handler", "Matcher"]
+__all__ = ["Handler", "Listener", "Matcher"]
 
 Handler = Callable[[Event, int], None]
 """Takes in an event of the right name, at an instant."""
 
-_Notice = Callable[[Values | str, int], None]
+_Notice = Callable[[Values, int], None]
 """Lets instances react to a counted event with such values, at an instant."""
+
+
+@dataclass(frozen=True, slots=True)
+class Listener:
+    """Who is told what becomes of instances.
+
+    Attributes:
+        on_match: Called with each match and the time from when on nothing could take it back.
+        on_end: Called with each instance that can no longer become complete, and why.
+        limit: How many instances are kept of one chronicle; None for any number.
+        on_excess: Called when there are more than that.
+    """
+
+    on_match: "Callable[[Matcher, Instance, int], None]"
+    on_end: "Callable[[Matcher, Instance, str], None] | None" = None
+    limit: int | None = None
+    on_excess: "Callable[[Matcher], None] | None" = None
 
 
 class Matcher:
@@ -34,29 +52,21 @@ class Matcher:
     Args:
         model: The chronicle.
         agenda: Where instances that time decides about are put.
-        on_match: Called with each match and the time from when on nothing could take it back.
+        listener: Who is told what becomes of them.
 
     Attributes:
         model: The chronicle.
         counting: A handler for each counter, with the event type that it is for.
         filling: A handler for each slot likewise. An event counts before it fills a slot.
-        limit: How many instances are kept.
-        on_end: Called with each instance that can no longer become complete, and why.
-        on_excess: Called when there are more instances than the limit.
     """
 
-    def __init__(
-        self, model: Model, agenda: Agenda, on_match: Callable[["Matcher", Instance, int], None]
-    ) -> None:
+    def __init__(self, model: Model, agenda: Agenda, listener: Listener) -> None:
         self.model = model
         self._agenda = agenda
-        self._on_match = on_match
+        self._listener = listener
         self._notices: dict[Counter, list[_Notice]] = {c: [] for c in model.counters}
         self._counted = {c: CountedEvents(c) for c in model.counters if c.looks_back}
         self._n_instances = 0
-        self.limit = sys.maxsize
-        self.on_end: Callable[[Matcher, Instance, str], None] | None = None
-        self.on_excess: Callable[[Matcher], None] | None = None
         self._joiner = Joiner(model, self._new_stage)
         self.counting = [(c.pattern, self._counting(c)) for c in model.counters]
         self.filling = [(s.pattern, self._filling(s)) for s in model.slots]
@@ -90,9 +100,10 @@ class Matcher:
 
     def keep_to_limit(self) -> int:
         """Give up the oldest instances if there are more than the limit; return how many."""
-        if self._n_instances <= self.limit:
+        limit = self._listener.limit
+        if limit is None or self._n_instances <= limit:
             return 0
-        n = self._n_instances - self.limit + self.limit // 16
+        n = self._n_instances - limit + limit // 16
         oldest = sorted(self.instances(), key=_age)[:n]
         for instance in oldest:
             self._end(instance, "limit")
@@ -113,11 +124,17 @@ class Matcher:
 
     def _new_stage(self, mask: int) -> Stage:
         stage = Stage(self.model, mask)
-        stage.admit = self._admission(stage)
-        stage.review = self._judge if stage.is_complete else self._expire
+        stage.admit = partial(self._admit_first, stage)
         for watch in stage.watches:
             self._notices[watch.counter].append(self._noticing(stage, watch))
         return stage
+
+    def _admit_first(self, stage: Stage, instance: Instance, now: int) -> None:
+        """Take in the first instance of *stage*, when everything about the stage is known."""
+        stage.seal()
+        stage.admit = self._admission(stage)
+        stage.review = self._judge if stage.is_complete else self._expiry(stage)
+        stage.admit(instance, now)
 
     def _admission(self, stage: Stage) -> Callable[[Instance, int], None]:
         """Return what takes in a new instance, unless it is dead or complete already."""
@@ -126,6 +143,7 @@ class Matcher:
         looking_back = tuple(watch for watch in stage.watches if watch.counter.looks_back)
         earliest = _earliest_of(stage.awaited)
         schedule = self._agenda.schedule
+        add = stage.add if self._listener.limit is None else self._add
 
         def admit(instance: Instance, now: int) -> None:
             for watch in looking_back:
@@ -133,7 +151,7 @@ class Matcher:
                     return
             deadline = earliest(instance.latest)
             if deadline >= now:
-                self._add(instance)
+                add(instance)
                 if deadline < NEVER:
                     schedule(instance, deadline + INSTANT)
 
@@ -141,7 +159,7 @@ class Matcher:
 
     def _completion(self) -> Callable[[Instance, int], None]:
         """Return what decides about an instance all of whose slots have just been filled."""
-        counters, on_match = self.model.counters, self._on_match
+        counters, on_match = self.model.counters, self._listener.on_match
         if self.model.extremes or any(counter.looks_back for counter in counters):
             return self._complete
         ends = tuple((counter.end, counter.end_offset) for counter in counters)
@@ -156,8 +174,13 @@ class Matcher:
 
         return complete
 
-    def _expire(self, instance: Instance, _clock: int) -> None:
-        self._end(instance, "deadline")
+    def _expiry(self, stage: Stage) -> Callable[[Instance, int], None]:
+        """Return what forgets an instance whose deadline has passed."""
+        listener = self._listener
+        if listener.on_end is None and listener.limit is None:
+            remove = stage.remove
+            return lambda instance, _clock: remove(instance)
+        return lambda instance, _clock: self._end(instance, "deadline")
 
     def _look_back(self, watch: Watch, instance: Instance, now: int) -> bool:
         """Apply the events that have been counted already; return whether that leaves it alive."""
@@ -188,15 +211,16 @@ class Matcher:
         return tuple((i, limits[i]) for i in stage.open if i != end and limits[i] < UNBOUNDED)
 
     def _add(self, instance: Instance) -> None:
-        self._n_instances += 1
-        if self._n_instances > self.limit and self.on_excess is not None:
-            self.on_excess(self)
         instance.stage.add(instance)
+        self._n_instances += 1
+        limit, on_excess = self._listener.limit, self._listener.on_excess
+        if limit is not None and on_excess is not None and self._n_instances > limit:
+            on_excess(self)
 
     def _end(self, instance: Instance, reason: str) -> None:
         """Remove an instance that can no longer become complete."""
-        if self.on_end is not None:
-            self.on_end(self, instance, reason)
+        if self._listener.on_end is not None:
+            self._listener.on_end(self, instance, reason)
         self._remove(instance)
 
     def _remove(self, instance: Instance) -> None:
@@ -209,7 +233,6 @@ class Matcher:
     def _counting(self, counter: Counter) -> Handler:
         pattern = counter.pattern
         match = pattern.match
-        key = key_of(pattern.variables, pattern.variables)
         notices = self._notices[counter]
         counted = self._counted.get(counter)
 
@@ -217,14 +240,13 @@ class Matcher:
             values = match(event)
             if values is None:
                 return
-            place = key(values)
             if counted is not None:
                 if counted.is_full:
                     begin = self.earliest_begin(counter.begin, now, counter.begin_offset)
                     counted.forget_before(begin)
-                counted.add(place, now)
+                counted.add(values, now)
             for notice in notices:
-                notice(place, now)
+                notice(values, now)
 
         return count
 
@@ -234,8 +256,8 @@ class Matcher:
         if not (stage.is_complete or watch.end_known or watch.counter.looks_back):
             return self._forbidding(stage, watch)
 
-        def notice(place: Values | str, now: int) -> None:
-            bucket = index.get(place)
+        def notice(values: Values, now: int) -> None:
+            bucket = index.get(values)
             if bucket is not None:
                 for instance in list(bucket):
                     self._notice(watch, instance, now)
@@ -250,8 +272,8 @@ class Matcher:
         earliest = _earliest_of(stage.awaited)
         schedule = self._agenda.schedule
 
-        def forbid(place: Values | str, now: int) -> None:
-            bucket = index.get(place)
+        def forbid(values: Values, now: int) -> None:
+            bucket = index.get(values)
             if bucket is None:
                 return
             bound = now - counter.end_offset
@@ -298,7 +320,7 @@ class Matcher:
         """Return when the first event from *begin* on came that is one too many, if it has."""
         counter = watch.counter
         assert counter.most is not None
-        return self._counted[counter].nth(watch.key(instance.values), begin, counter.most)
+        return self._counted[counter].nth(watch.key_of(instance), begin, counter.most)
 
     # Matches.
 
@@ -310,7 +332,7 @@ class Matcher:
             if not _pass(model.tests, instance.times):
                 return
         if not model.counters:
-            self._on_match(self, instance, now)
+            self._listener.on_match(self, instance, now)
             return
         self._add(instance)
         self._judge(instance, now)
@@ -334,7 +356,7 @@ class Matcher:
                 self._agenda.schedule(instance, due)
             return
         self._remove(instance)
-        self._on_match(self, instance, settled_at)
+        self._listener.on_match(self, instance, settled_at)
 
     def _failure(self, watch: Watch, instance: Instance) -> str:
         """Return why the counter of *watch* fails."""
@@ -342,7 +364,7 @@ class Matcher:
         begin = instance.times[counter.begin] + counter.begin_offset
         end = instance.times[counter.end] + counter.end_offset
         counted = self._counted.get(counter)
-        n = 0 if counted is None else counted.count(watch.key(instance.values), begin, end)
+        n = 0 if counted is None else counted.count(watch.key_of(instance), begin, end)
         return "too few events" if n < counter.least else _excess_of(counter)
 
     def _standing(self, watch: Watch, instance: Instance, clock: int) -> tuple[int | None, int]:
@@ -356,7 +378,7 @@ class Matcher:
         never = (None, clock)
         if end <= begin:
             return never if counter.least else (max(instance.times), end)
-        key = watch.key(instance.values)
+        key = watch.key_of(instance)
         counted = self._counted.get(counter)
         n = counted.count(key, begin, end) if counted is not None else 0
         if counter.most is None:

@@ -12,7 +12,7 @@ from operator import itemgetter
 from chronicles.events import Event
 from chronicles.syntax import EventType, Parameter, Star, Value, Variable
 
-__all__ = ["Filter", "Pattern", "Values", "key_of", "pattern_from_event_type", "projection"]
+__all__ = ["Filter", "Pattern", "Values", "pattern_from_event_type", "projection"]
 
 Values = tuple[str, ...]
 """The values of some variables, in an order that is known from elsewhere."""
@@ -92,17 +92,6 @@ def projection(source: Sequence[str], target: Sequence[str]) -> Callable[[Values
     if places == list(range(len(source))):
         return None
     return _picker(places)  # type: ignore[return-value]  # what is taken from values are values
-
-
-def key_of(source: Sequence[str], target: Sequence[str]) -> Callable[[Values], Values | str]:
-    """Return a function from the values of *source* to something that stands for *target*."""
-    if len(target) == 1:
-        return itemgetter(source.index(target[0]))
-    return projection(source, target) or _same
-
-
-def _same(values: Values) -> Values:
-    return values
 
 
 def _picker(places: Sequence[int]) -> Callable[[_Row], _Row]:

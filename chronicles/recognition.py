@@ -25,7 +25,7 @@ from typing import cast
 from chronicles.constraints import INSTANT
 from chronicles.events import Event, Recognition, event_from_recognition
 from chronicles.instances import Agenda, Instance
-from chronicles.matching import Matcher
+from chronicles.matching import Listener, Matcher
 from chronicles.models import Model
 from chronicles.patterns import Values, projection
 from chronicles.prospects import EndedInstance, PartialInstance, partial_instance
@@ -68,13 +68,15 @@ class Recogniser:
         if limit is not None and limit < 1:
             raise ValueError(f"expected a limit of at least 1 partial instance, found {limit}")
         self.n_late = 0
-        self._limit = limit
         self._on_end = on_end
+        self._listener = Listener(
+            self._note, self._note_end if on_end else None, limit, self._note_excess
+        )
         self._clock: int | None = None
         self._agenda = Agenda()
         self._found: list[_Found] = []
         self._seen: set[tuple[str, Values, str | None, str | None]] = set()
-        self._too_many: list[Matcher] = []
+        self._too_many: dict[Matcher, None] = {}
         self._matchers: list[Matcher] = []
         self._uses: _Uses = {}
         self._level: dict[Matcher, int] = {}
@@ -105,7 +107,7 @@ class Recogniser:
             ValueError: A chronicle of this name is recognised already, or the chronicles would
                 be made of themselves; none of the models is registered then.
         """
-        added = [Matcher(model, self._agenda, self._note) for model in models]
+        added = [Matcher(model, self._agenda, self._listener) for model in models]
         matchers = {matcher.model.name: matcher for matcher in self._matchers}
         for matcher in added:
             if matchers.setdefault(matcher.model.name, matcher) is not matcher:
@@ -193,11 +195,6 @@ class Recogniser:
         self._makers[matcher] = _maker(matcher.model)
         if matcher.model.counted_interval is not None:
             self._reports[matcher] = NonOverlapping(matcher, matcher.model.counted_interval)
-        if self._limit is not None:
-            matcher.limit = self._limit
-            matcher.on_excess = self._too_many.append
-        if self._on_end is not None:
-            matcher.on_end = self._note_end
 
     def _set_matchers(
         self, matchers: list[Matcher], uses: _Uses, level: dict[Matcher, int]
@@ -224,7 +221,7 @@ class Recogniser:
             self._keep_to_limit()
 
     def _keep_to_limit(self) -> None:
-        for matcher in dict.fromkeys(self._too_many):
+        for matcher in self._too_many:
             n = matcher.keep_to_limit()
             if n:
                 self._note_given_up(matcher, n)
@@ -245,6 +242,9 @@ class Recogniser:
     def _note(self, matcher: Matcher, instance: Instance, recognised_at: int) -> None:
         self._found.append((recognised_at, self._place[matcher], matcher, instance))
 
+    def _note_excess(self, matcher: Matcher) -> None:
+        self._too_many[matcher] = None
+
     def _note_end(self, matcher: Matcher, instance: Instance, reason: str) -> None:
         assert self._on_end is not None
         clock = self._clock or 0
@@ -257,7 +257,7 @@ class Recogniser:
         _logger.warning(
             "chronicle '%s' has more than %d partial instances: gave up the %d oldest (%d in all)",
             name,
-            matcher.limit,
+            self._listener.limit,
             n,
             total,
         )
