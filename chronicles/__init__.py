@@ -14,8 +14,9 @@ Read in this order:
 - `instances`: partial instances and how they are found; `counting`; `matching`: which instances
   begin, go on, complete, or die; `joining`: how an event joins them; `reporting`: which matches
   are reported; `prospects`: partial instances as people see them
-- `recognition`: the recogniser; `processes`: the recogniser on streams; `recognised`: what it
-  recognises as events for others
+- `recognition`: the recogniser; `ordering`: samples in the order of their valid times;
+  `processes`: the recogniser on streams; `recognised`: what it recognises as events for others;
+  `marking`: the objects that it was about
 - `errors`
 """
 

@@ -1,15 +1,16 @@
-"""The recogniser as a knowledge process; the only module here that knows samples."""
+"""The recogniser as a knowledge process."""
 
 import logging
 from collections.abc import Iterable, Iterator
-from heapq import heappop, heappush
 from itertools import groupby
 from typing import Any
 
 from chronicles.events import Event, Recognition
 from chronicles.models import Model
+from chronicles.ordering import InputOrder
 from chronicles.recognition import Recogniser
-from dyknow.streams.sample import Sample
+from dyknow.streams.process import Element
+from dyknow.streams.sample import BEGINNING_OF_TIME, Heartbeat, Sample
 from dyknow.time import Duration, TimePoint
 
 __all__ = ["ChronicleRecogniser"]
@@ -25,29 +26,34 @@ class ChronicleRecogniser:
     The value of each input sample is a tuple of the events at its valid time; an empty one says
     that nothing happened up to then. Streams need not
     agree in their delay: with *max_delay* each sample waits until that time after it was valid,
-    so that all streams are taken in the order of valid time. Before the events of a sample are
+    so that all streams are taken in the order of valid time; it waits no longer for a stream that
+    says by a heartbeat how far it is complete. Before the events of a sample are
     taken in, the clock of the recogniser moves to its valid time, which ends what could only
     have gone on before.
 
     One sample comes out for each time at which anything was recognised; it is valid at that
-    time, and its value is the tuple of recognitions.
+    time, and its value is the tuple of recognitions. Heartbeats say up to which time nothing more
+    will be recognised.
 
-    Without *max_delay* samples are taken in as they arrive and only they move the clock; one
-    that is valid before another was is left out, counted in `n_late`, and reported in the log.
+    Without *max_delay* samples are taken in as they arrive, unless streams give heartbeats, and
+    only samples and heartbeats move the clock; a sample that
+    is valid before another was is left out, counted in `n_late`, and reported in the log.
     With *max_delay*, which promises that no sample arrives later than that after it was valid,
     the clock moves on without samples as well.
 
     Args:
         models: The chronicles.
         max_delay: How long after its valid time a sample may arrive.
+
+    Attributes:
+        order: Puts the samples of the streams in order.
     """
 
     def __init__(self, models: Iterable[Model], *, max_delay: Duration | None = None) -> None:
+        self.order = InputOrder(max_delay)
         self._recogniser = Recogniser(models)
-        self._max_delay = max_delay
-        self._waiting: list[tuple[int, int, tuple[Event, ...]]] = []
-        self._n_samples = 0
         self._last_available = -1
+        self._complete = BEGINNING_OF_TIME
 
     @property
     def n_late(self) -> int:
@@ -59,38 +65,35 @@ class ChronicleRecogniser:
         """The recogniser, to ask for partial instances."""
         return self._recogniser
 
-    def push(
-        self, now: TimePoint, inputs: tuple[Sample[Any], ...]
-    ) -> Iterable[Sample[_Recognitions]]:
+    def push(self, now: TimePoint, inputs: tuple[Sample[Any], ...]) -> list[Element]:
         """Take in the new samples among *inputs* and emit what is recognised."""
-        for sample in inputs:
-            if sample.available_time == now and isinstance(sample.value, tuple):
-                self._n_samples += 1
-                heappush(self._waiting, (sample.valid_time, self._n_samples, sample.value))
+        self.order.take(now, inputs)
         return self.advance(now)
 
-    def advance(self, now: TimePoint) -> Iterable[Sample[_Recognitions]]:
-        """Emit what time alone recognises, if *max_delay* says how far time has come."""
-        found = []
-        while self._waiting and self._is_due(self._waiting[0][0], now):
-            valid_time, _, events = heappop(self._waiting)
-            found.extend(self._take_in(TimePoint(valid_time), events))
-        if self._max_delay is not None:
-            found.extend(self._recogniser.advance(TimePoint(now - self._max_delay)))
-        return list(self._samples(now, found))
+    def beat(self, now: TimePoint, at: int, heartbeat: Heartbeat) -> list[Element]:
+        """Take in how far an input is complete and emit what is recognised by that."""
+        self.order.hear(at, heartbeat)
+        return self.advance(now)
+
+    def advance(self, now: TimePoint) -> list[Element]:
+        """Emit what time alone recognises, as far as it is known how far time has come."""
+        found: list[Recognition] = []
+        for _, sample in self.order.ready(now):
+            if isinstance(sample.value, tuple):
+                found += self._take_in(sample.valid_time, sample.value)
+        complete = self.order.complete(now)
+        if complete > BEGINNING_OF_TIME:
+            found += self._recogniser.advance(TimePoint(complete + 1))
+        return [*self._samples(now, found), *self._heartbeats(now)]
 
     def due(self) -> TimePoint | None:
         """Return when the next sample has waited long enough or time decides something."""
-        if self._max_delay is None:
-            return None
         deadline = self._recogniser.next_deadline()
-        times = [self._waiting[0][0]] if self._waiting else []
-        if deadline is not None:
-            times.append(deadline)
-        return TimePoint(min(times) + self._max_delay) if times else None
-
-    def _is_due(self, valid_time: int, now: int) -> bool:
-        return self._max_delay is None or valid_time + self._max_delay <= now
+        times = [
+            self.order.ready_when(),
+            None if deadline is None else self.order.complete_when(deadline),
+        ]
+        return min((time for time in times if time is not None), default=None)
 
     def _take_in(self, valid_time: TimePoint, events: tuple[Event, ...]) -> list[Recognition]:
         n_late = self._recogniser.n_late
@@ -105,3 +108,10 @@ class ChronicleRecogniser:
         for time, group in groupby(found, key=lambda recognition: recognition.recognised_at):
             self._last_available = max(now, self._last_available + 1)
             yield Sample(tuple(group), time, TimePoint(self._last_available))
+
+    def _heartbeats(self, now: TimePoint) -> Iterator[Heartbeat]:
+        """Say up to where all recognitions are out: before the instant at which the clock is."""
+        clock = self._recogniser.clock
+        if clock is not None and clock - 1 > self._complete:
+            self._complete = TimePoint(clock - 1)
+            yield Heartbeat(self._complete, now)

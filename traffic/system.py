@@ -17,8 +17,10 @@ from anchoring.cars import Car
 from anchoring.links import LinkSettings, LinkUnit
 from anchoring.on_road_objects import OnRoadObject
 from anchoring.processes import LinkProcess
+from anchoring.reckless_drivers import RecklessDriver
 from anchoring.structures import LinkHistory, ObjectLinkageStructures
 from anchoring.world_objects import WorldObject
+from chronicles.marking import RecognitionMarks
 from chronicles.models import models_from_chronicles
 from chronicles.parser import read_chronicles
 from chronicles.processes import ChronicleRecogniser
@@ -194,6 +196,7 @@ class _Links:
             "WorldObject": WorldObject,
             "OnRoadObject": lambda: OnRoadObject(self._road_map),
             "Car": lambda: Car(self._road_map),
+            "RecklessDriver": RecklessDriver,
         }
         if name not in units:
             raise ValueError(f"expected one of {', '.join(units)} to be linked, found '{name}'")
@@ -401,6 +404,8 @@ def _units(world: World, made: Made) -> dict[str, Any]:
         "Following": Following,
         "Changes": partial(Changes, vocabularies),
         "Chronicles": _Chronicles(made).recogniser,
+        "RecognitionEvents": RecognitionEvents,
+        "RecognitionMarks": RecognitionMarks,
     }
 
 

@@ -83,24 +83,19 @@ class _Rows:
             first = self._origins[0]
             found = "none" if table is NO_VALUE else type(table).__name__
             raise FeatureError(first.feature, f"a table in '{first.stream}'", found)
-        wanted = np.array(self._ids_in(table.sort), dtype=np.int64)
+        wanted = np.array(self._ids_in(table), dtype=np.int64)
         positions = positions_of(wanted, table.ids).tolist()
         return [
             (origin.feature, _of_row(origin, table, at))
             for origin, at in zip(self._origins, positions, strict=True)
         ]
 
-    def _ids_in(self, sort: str) -> list[int]:
+    def _ids_in(self, table: Table) -> list[int]:
         """Return the id that each object has in tables of a sort; -1 if it is of another."""
-        if sort not in self._ids:
-            self._ids[sort] = [_id_of(str(origin.symbol), sort) for origin in self._origins]
-        return self._ids[sort]
-
-
-def _id_of(symbol: str, sort: str) -> int:
-    number = symbol.removeprefix(sort)
-    is_of_sort = symbol.startswith(sort) and number.isdecimal() and str(int(number)) == number
-    return int(number) if is_of_sort else -1
+        if table.sort not in self._ids:
+            found = [table.id_of(str(origin.symbol)) for origin in self._origins]
+            self._ids[table.sort] = [-1 if each is None else each for each in found]
+        return self._ids[table.sort]
 
 
 def _of_row(origin: Origin, table: Table, at: int) -> Any:

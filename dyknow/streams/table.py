@@ -54,6 +54,12 @@ class Table:
         """Return the symbol of one object, such as `car3`."""
         return f"{self.sort}{object_id}"
 
+    def id_of(self, symbol: str) -> int | None:
+        """Return the id that a symbol stands for, or None if it is none of this sort."""
+        number = symbol.removeprefix(self.sort)
+        is_ours = symbol.startswith(self.sort) and number.isdecimal()
+        return int(number) if is_ours and self.symbol(int(number)) == symbol else None
+
     def select(self, rows: npt.NDArray[np.bool_] | npt.NDArray[np.intp]) -> "Table":
         """Return the rows for which a mask is true, or those with the given positions."""
         columns = {name: column[rows] for name, column in self.columns.items()}

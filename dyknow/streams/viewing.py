@@ -39,8 +39,5 @@ class View(Reactive):
         if not isinstance(table, Table):
             kind = type(table).__name__
             raise TypeError(f"expected a table to look for '{self._symbol}' in, found {kind}")
-        number = self._symbol.removeprefix(table.sort)
-        is_ours = self._symbol.startswith(table.sort) and number.isdecimal()
-        if not is_ours or table.symbol(int(number)) != self._symbol:
-            return None
-        return table.row(int(number))
+        object_id = table.id_of(self._symbol)
+        return None if object_id is None else table.row(object_id)

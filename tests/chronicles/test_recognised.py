@@ -3,13 +3,13 @@
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from chronicles.events import Event
+from chronicles.events import Event, Recognition
 from chronicles.models import models_from_chronicles
 from chronicles.parser import parse_chronicles
 from chronicles.processes import ChronicleRecogniser
 from chronicles.recognised import RecognitionEvents
 from dyknow.streams.sample import Heartbeat, Sample
-from dyknow.time import Duration
+from dyknow.time import Duration, TimePoint
 from tests.support.streams import ms, run_unit
 
 _DELAY = Duration(ms(40))
@@ -27,8 +27,13 @@ chronicle twice[?x] {
 """
 
 
-def _recogniser(text: str) -> ChronicleRecogniser:
-    return ChronicleRecogniser(models_from_chronicles(parse_chronicles(text)), max_delay=_DELAY)
+def _samples(
+    text: str, *inputs: list[Sample[tuple[Event, ...]]], until: TimePoint
+) -> list[Sample[tuple[Recognition, ...]]]:
+    """Return what is recognised of the chronicles of a text."""
+    models = models_from_chronicles(parse_chronicles(text))
+    produced = run_unit(ChronicleRecogniser(models, max_delay=_DELAY), *inputs, until=until)
+    return [each for each in produced if isinstance(each, Sample)]
 
 
 def _sample(valid: int, available: int, *names: str) -> Sample[tuple[Event, ...]]:
@@ -39,7 +44,7 @@ def _sample(valid: int, available: int, *names: str) -> Sample[tuple[Event, ...]
 def test_a_recognition_is_an_event_at_the_time_when_it_became_certain():
     """Its valid time is that of recognition; when it began and ended are its values."""
     messages = [_sample(0, 0, "a"), _sample(20, 20), _sample(50, 50)]
-    recognitions = run_unit(_recogniser(_SIMPLE), messages, until=ms(200))
+    recognitions = _samples(_SIMPLE, messages, until=ms(200))
 
     (sample,) = run_unit(RecognitionEvents(), recognitions, until=ms(200))
 
@@ -66,10 +71,10 @@ def test_two_recognisers_find_what_one_finds(drawn: list[tuple[int, int, str]]) 
     messages = [_sample(valid, at, name) for at, (valid, name) in sorted(arrivals.items())]
     until = ms(400)
 
-    together = run_unit(_recogniser(_SIMPLE + _COMPOUND), messages, until=until)
-    simple = run_unit(_recogniser(_SIMPLE), messages, until=until)
+    together = _samples(_SIMPLE + _COMPOUND, messages, until=until)
+    simple = _samples(_SIMPLE, messages, until=until)
     events = run_unit(RecognitionEvents(), simple, until=until)
-    apart = run_unit(_recogniser(_COMPOUND), messages, events, until=until)
+    apart = _samples(_COMPOUND, messages, events, until=until)
 
     found = [each for sample in together for each in sample.value if each.chronicle == "twice"]
     assert [each for sample in apart for each in sample.value] == found
