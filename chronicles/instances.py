@@ -23,14 +23,13 @@ class Instance:
     Attributes:
         stage: Which slots have been filled.
         values: Of the variables of the stage.
-        times: For each slot the time of its event, 0 while it is open.
-        events: For each slot its event.
-        latest: For each slot the latest time at which it can be filled. Instances share these
-            lists: who limits a slot makes a new one.
+        times: For each slot the time of its event, or while it is open, the latest time at which
+            it can be filled.
+        events: For each slot its event, None while it is open.
         due: When the agenda looks at it; None if it never needs to.
     """
 
-    __slots__ = ("due", "events", "latest", "stage", "times", "values")
+    __slots__ = ("due", "events", "stage", "times", "values")
 
     def __init__(
         self,
@@ -38,13 +37,11 @@ class Instance:
         values: Values,
         times: list[int],
         events: list[Event | None],
-        latest: list[int],
     ) -> None:
         self.stage = stage
         self.values = values
         self.times = times
         self.events = events
-        self.latest = latest
         self.due: int | None = None
 
 

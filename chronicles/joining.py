@@ -88,13 +88,13 @@ class Joiner:
 
     def _beginning(self, slot: Slot) -> Recipe:
         """Return the recipe for an event that joins nothing."""
-        at, n_slots = slot.index, len(self._model.slots)
+        at = slot.index
         windows = [NEVER if s.latest >= UNBOUNDED else s.latest for s in self._model.slots]
         reach = self._reach(slot, ())
         is_windowed = any(windows[j] < NEVER for j, _ in reach)
         arrange = self._arrangement(slot.pattern.variables, 1 << at)
         allows = self._restriction(1 << at, ())
-        nothing_yet: list[Event | None] = [None] * n_slots
+        nothing_yet: list[Event | None] = [None] * len(windows)
         stage: Stage | None = None
 
         def begin(event: Event, now: int, values: Values) -> None:
@@ -102,18 +102,17 @@ class Joiner:
             arranged = values if arrange is None else arrange(values)
             if allows is not None and not allows(arranged):
                 return
-            latest = windows.copy()
+            times = windows.copy()
             for j, limit in reach:
-                latest[j] = now + limit
+                times[j] = now + limit
             if is_windowed:
-                latest = list(map(min, latest, windows))
-            times = [0] * n_slots
+                times = list(map(min, times, windows))
             times[at] = now
             events = nothing_yet.copy()
             events[at] = event
             if stage is None:
                 stage = self._stage(1 << at)
-            stage.admit(Instance(stage, arranged, times, events, latest), now)
+            stage.admit(Instance(stage, arranged, times, events), now)
 
         return begin
 
@@ -141,7 +140,7 @@ class Joiner:
                     joined.times[at], joined.events[at] = now, event
                     joined.stage, joined.values = self._stage(mask), arranged
                     for j, limit in reach:
-                        joined.latest[j] = min(joined.latest[j], now + limit)
+                        joined.times[j] = min(joined.times[j], now + limit)
                     joined.stage.admit(joined, now)
 
         return join
@@ -160,7 +159,7 @@ class Joiner:
             if bucket is None:
                 return
             for instance in bucket:
-                if now > instance.latest[at]:
+                if now > instance.times[at]:
                     continue
                 for i, pause in pauses:
                     if now - instance.times[i] < pause:
@@ -186,18 +185,15 @@ class Joiner:
             arranged = combine(instance.values, values) if combine else instance.values
             if allows is not None and not allows(arranged):
                 return
-            latest = instance.latest
-            if reach:
-                latest = latest.copy()
-                for j, limit in reach:
-                    latest[j] = min(latest[j], now + limit)
             times = instance.times.copy()
             times[at] = now
+            for j, limit in reach:
+                times[j] = min(times[j], now + limit)
             events = instance.events.copy()
             events[at] = event
             if stage is None:
                 stage = self._stage(mask)
-            stage.admit(Instance(stage, arranged, times, events, latest), now)
+            stage.admit(Instance(stage, arranged, times, events), now)
 
         return extend
 
@@ -226,7 +222,7 @@ class Joiner:
             bucket = index.get(key(values) if key else values)
             if bucket is None:
                 return ()
-            found = [instance for instance in bucket if now <= instance.latest[at]]
+            found = [instance for instance in bucket if now <= instance.times[at]]
             for i, pause in pauses:
                 found = [instance for instance in found if now - instance.times[i] >= pause]
             return found
@@ -296,17 +292,17 @@ def _fit(instances: tuple[Instance, ...], filled: list[tuple[int, ...]]) -> bool
     """Return whether no instance puts a limit on a slot that another one has filled later."""
     for one in instances:
         for other, slots in zip(instances, filled, strict=True):
-            if one is not other and any(other.times[i] > one.latest[i] for i in slots):
+            if one is not other and any(other.times[i] > one.times[i] for i in slots):
                 return False
     return True
 
 
 def _joined(instances: tuple[Instance, ...]) -> Instance:
     """Return what some instances with nothing in common are together."""
-    first, *others = instances
-    latest, times, events = first.latest.copy(), first.times.copy(), first.events.copy()
-    for other in others:
-        latest = list(map(min, latest, other.latest))
-        for i in other.stage.filled:
-            times[i], events[i] = other.times[i], other.events[i]
-    return Instance(first.stage, first.values, times, events, latest)
+    first = instances[0]
+    times = [min(found) for found in zip(*[one.times for one in instances], strict=True)]
+    events = first.events.copy()
+    for one in instances:
+        for i in one.stage.filled:
+            times[i], events[i] = one.times[i], one.events[i]
+    return Instance(first.stage, first.values, times, events)

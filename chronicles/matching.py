@@ -149,7 +149,7 @@ class Matcher:
             for watch in looking_back:
                 if not self._look_back(watch, instance, now):
                     return
-            deadline = earliest(instance.latest)
+            deadline = earliest(instance.times)
             if deadline >= now:
                 add(instance)
                 if deadline < NEVER:
@@ -199,11 +199,13 @@ class Matcher:
         if watch.end_known:
             return instance.times[end] + counter.end_offset <= excess
         bound = excess - counter.end_offset
-        if bound >= instance.latest[end]:
+        times = instance.times
+        if bound >= times[end]:
             return True
-        reach = self._reach(end, instance.stage)
-        latest = instance.latest = _limited(instance.latest, end, bound, reach)
-        return min([latest[i] for i in instance.stage.awaited]) >= now
+        times[end] = bound
+        for i, limit in self._reach(end, instance.stage):
+            times[i] = min(times[i], bound + limit)
+        return min([times[i] for i in instance.stage.awaited]) >= now
 
     def _reach(self, end: int, stage: Stage) -> tuple[tuple[int, int], ...]:
         """Return which open slots the end of an interval limits, and how much later they are."""
@@ -278,10 +280,13 @@ class Matcher:
                 return
             bound = now - counter.end_offset
             for instance in list(bucket):
-                if bound >= instance.latest[end] or now < instance.times[begin] + begin_offset:
+                times = instance.times
+                if bound >= times[end] or now < times[begin] + begin_offset:
                     continue
-                latest = instance.latest = _limited(instance.latest, end, bound, reach)
-                due = earliest(latest) + INSTANT
+                times[end] = bound
+                for i, limit in reach:
+                    times[i] = min(times[i], bound + limit)
+                due = earliest(times) + INSTANT
                 if due <= now:
                     self._end(instance, _excess_of(counter))
                 elif due != instance.due:
@@ -304,7 +309,7 @@ class Matcher:
         if not self._limit_end(watch, instance, excess, now):
             self._end(instance, _excess_of(counter))
             return
-        deadline = min([instance.latest[i] for i in instance.stage.awaited])
+        deadline = min([instance.times[i] for i in instance.stage.awaited])
         if deadline < NEVER and deadline + INSTANT != instance.due:
             self._agenda.schedule(instance, deadline + INSTANT)
 
@@ -391,17 +396,6 @@ class Matcher:
         if end > clock:
             return (None, end)
         return (end, end) if n >= counter.least else never
-
-
-def _limited(
-    latest: list[int], at: int, bound: int, reach: tuple[tuple[int, int], ...]
-) -> list[int]:
-    """Return the latest times of slots when one of them cannot be filled after *bound*."""
-    limited = latest.copy()
-    limited[at] = bound
-    for i, limit in reach:
-        limited[i] = min(limited[i], bound + limit)
-    return limited
 
 
 def _earliest_of(places: tuple[int, ...]) -> Callable[[list[int]], int]:

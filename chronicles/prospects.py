@@ -89,7 +89,7 @@ def _slots(
         event_type = _with_values(slot.pattern.event_type, values)
         pauses = [instance.times[j] - model.limits[i][j] for j in stage.filled]
         earliest = max(clock if i in stage.awaited else pauses[0], *pauses)
-        latest = instance.latest[i]
+        latest = instance.times[i]
         yield Awaited(
             text_of(EventAt(MADE_IN_PYTHON, event_type, slot.instant)),
             TimePoint(earliest),
