@@ -7,8 +7,8 @@ Read in this order:
 - `constraints`: simple temporal networks; `conditions`: on values; `expansion`: what is named or
   included, put in; `timing`: when instants can be
 - `declared`: what a file declares; `naming`, `circles`, `event_types`, `uses`, `bindings`: what
-  can be wrong; `check`: every fault of a file
-- `events`: what goes in and comes out; `semantics`: what chronicles mean
+  can be wrong; `check`: every fault of a file; `comments`: what is said about a chronicle
+- `events`: what goes in and comes out; `acceptance`: which events are as declared; `semantics`: what chronicles mean
 - `patterns` and `models`: chronicles prepared for recognition; `boundedness`: what may be awaited
   without end
 - `instances`: partial instances and how they are found; `counting`; `matching`: which instances
