@@ -47,4 +47,4 @@ def _turns() -> dict[str, Claim]:
     }
 
 
-_EXCEPTIONS: Mapping[str, Claim] = {**_turns()}
+_EXCEPTIONS: Mapping[str, Claim] = {**_turns(), "convoy_caught_up": Claim("convoy")}

@@ -6,7 +6,6 @@ from dataclasses import replace
 import numpy as np
 import numpy.typing as npt
 
-from dyknow.time import TimePoint
 from networks.roads import RoadMap
 from traffic.sumo.simulation import Frame
 from traffic.truth.manoeuvres import TrueManoeuvre
@@ -24,7 +23,8 @@ class GroundTruth:
 
     What a manoeuvre of a kind is stands at its watcher. It is in view if all of its vehicles were
     inside the footprint in every frame from the margin of its kind before its begin to so long
-    after its end.
+    after its end. Of a kind that says which part is enough, so long a part must have been in view,
+    with the margin before and after; it may go on at the end.
 
     Args:
         road_map: The map of the simulated network.
@@ -43,8 +43,7 @@ class GroundTruth:
         self._watchers = [make(road_map) for make in makers]
         self._visibility = Visibility()
         self._kinds = kinds
-        self._judged: list[TrueManoeuvre] = []
-        self._pending: list[TrueManoeuvre] = []
+        self._found: list[TrueManoeuvre] = []
 
     def observe(self, frame: Frame, footprint: Points | None = None) -> None:
         """Take in the next frame.
@@ -58,33 +57,32 @@ class GroundTruth:
         places = self._places.read(frame)
         self._visibility.observe(frame.time, ids, in_view=inside(position, footprint))
         for watcher in self._watchers:
-            self._pending += self._wanted(watcher.observe(frame, places))
-        self._judge(frame.time)
+            self._found += self._wanted(watcher.observe(frame, places))
 
     def manoeuvres(self) -> list[TrueManoeuvre]:
-        """Return all manoeuvres so far, in order of their ends.
-
-        Those that go on, or ended too late to be judged, are not in view.
-        """
+        """Return all manoeuvres so far, in order of their ends."""
         going_on = [
             found for watcher in self._watchers for found in self._wanted(watcher.finish())
         ]
-        unseen = [replace(found, in_view=False) for found in (*self._pending, *going_on)]
-        return sorted([*self._judged, *unseen], key=lambda found: found.end)
+        judged = [
+            *(replace(found, in_view=self._was_in_view(found)) for found in self._found),
+            *(replace(found, in_view=self._has_been_in_view(found)) for found in going_on),
+        ]
+        return sorted(judged, key=lambda found: found.end)
 
     def _wanted(self, found: Sequence[TrueManoeuvre]) -> list[TrueManoeuvre]:
         return [each for each in found if each.kind in self._kinds]
 
-    def _judge(self, now: TimePoint) -> None:
-        """Decide which manoeuvres were in view, as soon as their margin is over."""
-        due = [found for found in self._pending if self._is_due(found, now)]
-        self._pending = [found for found in self._pending if not self._is_due(found, now)]
-        self._judged += [replace(found, in_view=self._was_in_view(found)) for found in due]
-
-    def _is_due(self, found: TrueManoeuvre, now: TimePoint) -> bool:
-        return found.end + self._kinds[found.kind].margin <= now
+    def _has_been_in_view(self, going_on: TrueManoeuvre) -> bool:
+        part = self._kinds[going_on.kind].part
+        return part is not None and self._was_in_view(going_on)
 
     def _was_in_view(self, found: TrueManoeuvre) -> bool:
-        needed = found.begin - self._kinds[found.kind].margin
-        since = [self._visibility.since(vehicle) for vehicle in found.vehicles]
-        return all(began is not None and began <= needed for began in since)
+        definition = self._kinds[found.kind]
+        lasted = found.end - found.begin
+        needed = lasted if definition.part is None else min(lasted, definition.part)
+        return any(
+            min(last - definition.margin, found.end) - max(first + definition.margin, found.begin)
+            >= needed
+            for first, last in self._visibility.common_spans(found.vehicles)
+        )

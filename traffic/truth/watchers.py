@@ -6,9 +6,11 @@ from dataclasses import dataclass
 from dyknow.time import SECOND, Duration
 from networks.roads import RoadMap
 from networks.turns import Turn
+from traffic.truth.following import CONVOY, TAILGATING, FollowedWatcher, FollowingWatcher
 from traffic.truth.manoeuvres import Watcher
 from traffic.truth.overtakes import OvertakeWatcher
 from traffic.truth.turns import TurnWatcher
+from traffic.truth.weaving import WeavingWatcher
 
 __all__ = ["WATCHERS", "Definition"]
 
@@ -27,12 +29,15 @@ class Definition:
         margin: A manoeuvre has been seen if its vehicles were in view from so long before it to
             so long after: a turn needs the links it leads from and to, an overtake being behind
             and being in front.
+        part: Of what may go on for long, such as a convoy, how much must have been in view, with
+            the margin; None if all of it must.
         tolerance: How far apart in time a recognition and the manoeuvre that explains it may be.
     """
 
     watcher: Callable[[RoadMap], Watcher]
     score: str | None = None
     margin: Duration = _MARGIN
+    part: Duration | None = None
     tolerance: Duration = _TOLERANCE
 
 
@@ -41,5 +46,9 @@ WATCHERS: Mapping[str, Definition] = {
     "overtake": Definition(OvertakeWatcher.on),
     "overtake_left": Definition(OvertakeWatcher.on),
     "overtake_right": Definition(OvertakeWatcher.on),
+    "tailgating": Definition(FollowingWatcher, part=TAILGATING),
+    "convoy": Definition(FollowingWatcher, part=CONVOY),
+    "followed": Definition(FollowedWatcher.on),
+    "weaving": Definition(WeavingWatcher.on),
 }
 """By kind, in the order in which scores are shown."""

@@ -1,4 +1,6 @@
-"""Who is inside a footprint, and since when."""
+"""Who is inside a footprint, and when."""
+
+from itertools import pairwise
 
 import numpy as np
 from hypothesis import given, settings
@@ -19,23 +21,47 @@ def test_points_lie_inside_or_outside_the_footprint() -> None:
     assert inside(np.empty((0, 2)), SQUARE).shape == (0,)
 
 
-@given(st.lists(st.lists(st.sampled_from("IO."), min_size=3, max_size=3), min_size=1, max_size=8))
-@settings(derandomize=True, deadline=None, max_examples=200)
-def test_visibility_counts_from_the_last_break(frames: list[list[str]]) -> None:
-    """A vehicle is in view since the frame after that in which it was last outside or absent."""
+FRAMES = st.lists(st.lists(st.sampled_from("IO."), min_size=3, max_size=3), min_size=1, max_size=8)
+
+
+def watched(frames: list[list[str]]) -> Visibility:
+    """Return what is remembered of vehicles that are inside (I), outside (O) or nowhere (.)."""
     visibility = Visibility()
     for time, frame in enumerate(frames):
         ids = np.array([i for i, where in enumerate(frame) if where != "."], dtype=np.int64)
         in_view = np.array([frame[i] == "I" for i in ids], dtype=np.bool_)
         visibility.observe(TimePoint(time), ids, in_view=in_view)
+    return visibility
+
+
+def times_in(spans: list[tuple[int, int]]) -> list[int]:
+    """Return the frames that the spans hold."""
+    return [time for first, last in spans for time in range(first, last + 1)]
+
+
+@given(FRAMES)
+@settings(derandomize=True, deadline=None, max_examples=200)
+def test_spans_hold_the_frames_in_which_a_vehicle_is_inside(frames: list[list[str]]) -> None:
+    """Spans are as long as can be, and hold every frame inside and no other."""
+    visibility = watched(frames)
 
     for vehicle in range(3):
-        history = [frame[vehicle] for frame in frames]
-        breaks = [time for time, where in enumerate(history) if where != "I"]
-        since = max(breaks, default=-1) + 1
-        assert visibility.since(vehicle) == (since if since < len(frames) else None)
+        spans = visibility.spans(vehicle)
+        assert times_in(spans) == [t for t, frame in enumerate(frames) if frame[vehicle] == "I"]
+        assert all(last + 1 < first for (_, last), (first, _) in pairwise(spans))
 
 
-def test_a_vehicle_that_never_came_is_not_in_view() -> None:
-    """Ids that no frame has held are unknown, which is not in view."""
-    assert Visibility().since(1000) is None
+@given(FRAMES)
+@settings(derandomize=True, deadline=None, max_examples=200)
+def test_common_spans_hold_the_frames_in_which_all_are_inside(frames: list[list[str]]) -> None:
+    """Several vehicles are in view together when each of them is."""
+    common = watched(frames).common_spans([0, 2])
+
+    assert times_in(common) == [
+        time for time, frame in enumerate(frames) if frame[0] == frame[2] == "I"
+    ]
+
+
+def test_a_vehicle_that_never_came_was_never_in_view() -> None:
+    """Ids that no frame has held have no spans."""
+    assert Visibility().spans(1000) == []
