@@ -5,6 +5,7 @@ without an error. So a worker has one thread, and a cluster whose workers have m
 """
 
 import logging
+import os
 from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from typing import Any
@@ -45,6 +46,10 @@ class Engine:
     def n_workers(self) -> int:
         """How many workers there are now."""
         return len(_workers(self._client))
+
+    def process_ids(self) -> list[int]:
+        """Return the process of each worker, by the number that its own machine has for it."""
+        return list(self._client.run(os.getpid).values())
 
     def outcomes(self, cases: Iterable[Case]) -> Iterator[Outcome]:
         """Do all *cases*; yield what became of each, in the order in which they finish.
@@ -89,8 +94,12 @@ def local_workers(number: int) -> Iterator[Engine]:
 
 
 @contextmanager
-def cluster_at(address: str) -> Iterator[Engine]:
+def cluster_at(address: str, timeout: str = _SECONDS) -> Iterator[Engine]:
     """Give an engine with the workers of a cluster while the block lasts.
+
+    Args:
+        address: Of the cluster's scheduler, such as `tcp://host:8786`.
+        timeout: How long to wait for an answer.
 
     Raises:
         ExperimentError: The cluster does not answer, has no workers, has workers with more than
@@ -98,7 +107,7 @@ def cluster_at(address: str) -> Iterator[Engine]:
     """
     with _quiet():
         try:
-            client = Client(address, timeout=_SECONDS, set_as_default=False)
+            client = Client(address, timeout=timeout, set_as_default=False)
         except (OSError, ValueError, TypeError) as error:
             fault = f"--cluster: no cluster answers at '{address}': {error}"
             raise ExperimentError(fault) from error

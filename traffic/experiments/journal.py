@@ -29,10 +29,10 @@ class Journal:
 
     def __init__(self, path: Path) -> None:
         self._path = path
-        whole = _whole_length(path)
+        self._length = _whole_length(path)
         try:
-            self._file = path.open("ab")
-            self._file.truncate(whole)
+            self._file = path.open("ab", buffering=0)
+            self._file.truncate(self._length)
         except OSError as error:
             raise ExperimentError(f"cannot write '{path}': {error.strerror}") from error
 
@@ -43,11 +43,15 @@ class Journal:
             ExperimentError: The disk is full, or the file cannot be written for another reason.
         """
         text = json.dumps(line, sort_keys=True, separators=(",", ":"), allow_nan=False)
+        content = memoryview(f"{text}\n".encode())
         try:
-            self._file.write(f"{text}\n".encode())
-            self._file.flush()
+            written = 0
+            while written < len(content):
+                written += self._file.write(content[written:])
             os.fsync(self._file.fileno())
+            self._length += len(content)
         except OSError as error:
+            self._file.truncate(self._length)
             fault = f"cannot write '{self._path}': {error.strerror}; the runs before are safe"
             raise ExperimentError(fault) from error
 

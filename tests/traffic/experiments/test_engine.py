@@ -1,0 +1,67 @@
+"""Who does the runs: processes of this machine, and clusters that may be used."""
+
+import os
+import signal
+from pathlib import Path
+
+import pytest
+from distributed import LocalCluster
+
+from traffic.errors import ExperimentError
+from traffic.experiments.cases import Case
+from traffic.experiments.engine import cluster_at, local_workers
+
+pytestmark = pytest.mark.slow
+
+SHORT = {"view": "truth", "duration": "1 s", "scenario.warm_up": "0 s"}
+
+
+def case(seed: int, **settings: object) -> Case:
+    """Return a short run."""
+    return Case(0, seed, "rural", {**SHORT, **settings}, Path())
+
+
+@pytest.mark.sumo
+@pytest.mark.filterwarnings("ignore::DeprecationWarning", "ignore::ResourceWarning")
+def test_processes_do_runs_and_one_that_dies_is_replaced() -> None:
+    """All cases are done though a worker is killed; one that fails says why."""
+    cases = [case(1), case(2), case(3, **{"scenario.sumo": {"no-such-option": 1}}), case(4)]
+    with local_workers(1) as engine:
+        workers = engine.process_ids()
+        outcomes = {}
+        for outcome in engine.outcomes(cases):
+            if not outcomes:
+                os.kill(workers[0], signal.SIGKILL)
+            outcomes[outcome.seed] = outcome
+
+    assert sorted(outcomes) == [1, 2, 3, 4]
+    assert [seed for seed, each in outcomes.items() if each.error] == [3]
+    assert "no-such-option" in str(outcomes[3].error)
+    assert all(set(outcomes[seed].counts) >= {"turn", "overtake"} for seed in (1, 2, 4))
+
+
+def test_a_cluster_that_does_not_answer_is_told() -> None:
+    """Nobody listens at the address, or it is none."""
+    with (
+        pytest.raises(ExperimentError, match="no cluster answers at"),
+        cluster_at("tcp://127.0.0.1:9", timeout="1s"),
+    ):
+        pass
+
+
+@pytest.mark.filterwarnings("ignore::DeprecationWarning", "ignore::ResourceWarning")
+def test_a_cluster_whose_workers_have_threads_is_refused() -> None:
+    """The simulator has one state per process; the message says so."""
+    with (
+        LocalCluster(
+            n_workers=1,
+            threads_per_worker=2,
+            processes=False,
+            protocol="tcp",
+            host="127.0.0.1",
+            dashboard_address=None,
+        ) as cluster,
+        pytest.raises(ExperimentError, match="one state per process"),
+        cluster_at(cluster.scheduler_address),
+    ):
+        pass

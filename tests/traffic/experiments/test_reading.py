@@ -1,0 +1,79 @@
+"""Design files: what is said about their faults before anything runs."""
+
+from pathlib import Path
+
+import pytest
+
+from traffic.errors import ExperimentError
+from traffic.experiments.reading import bundled_designs, check_design, find_design, read_design
+
+GOOD = """
+scenario = "rural"
+measures = ["overtake.recall"]
+[fixed]
+view = "truth"
+duration = "2 s"
+[factors]
+position_noise = [0, 4]
+"car_relations.gap" = [1, 2]
+"""
+
+
+def faults(text: str, folder: Path) -> list[str]:
+    """Return the faults of a text, without folder and excerpt."""
+    path = folder / "d.toml"
+    path.write_text(text, encoding="utf-8")
+    with pytest.raises(ExperimentError) as caught:
+        check_design(path, read_design(path))
+    return [fault.split("\n")[0].removeprefix(f"{folder}/") for fault in caught.value.faults]
+
+
+def test_the_bundled_designs_are_possible() -> None:
+    """Each can be read, says what it is, and every level of it is possible."""
+    for path in bundled_designs().values():
+        design = read_design(path)
+        checked = check_design(path, design)
+
+        assert design.description
+        assert checked.simulated_seconds > 0
+        assert len(checked.files) >= 3
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "said"),
+    [
+        ("view =", "veiw =", ":5:1: --set: expected a parameter of the specification"),
+        ("[0, 4]", '[0, "much"]', ":8:1: position_noise: expected a number of metres"),
+        ("[0, 4]", "[0, -4]", ":8:1: --position-noise: expected a number of metres, at least 0"),
+        ("[0, 4]", "[0, 0]", ":8:1: 'position_noise' has a level twice"),
+        ("[0, 4]", "[]", ":8:1: expected at least one item"),
+        ("[0, 4]", "{ from = 0, to = 4 }", ":8:1: a range of levels needs the table 'sampling'"),
+        (".gap", ".gp", ":9:1: no setting of 'CarRelations' called 'gp'"),
+        ("[1, 2]", '[1, "x"]', ":9:1: the setting 'gap' must be of sort 'number'"),
+        ("overtake.recall", "overtak.recall", ":3:1: no run scores 'overtak'; did you mean"),
+        (
+            "scenario =",
+            "scenaro =",
+            ":2:1: no key called 'scenaro' here; did you mean 'scenario'?",
+        ),
+        ('"rural"', '"rurl"', ":4:1: no scenario called 'rurl'; did you mean 'rural'?"),
+        ("[fixed]", "[fixed]\nseed = 3", ":5:1: expected 'first_seed' and 'runs_per_cell'"),
+        ("[fixed]", "[fixed]\nposition_noise = 1", ":5:1: 'position_noise' cannot be fixed"),
+        ("measures", "name = 'x'\nmeasures", ":3:1: a design has no key 'name'"),
+        ("[factors]", "[factors", "Expected"),
+    ],
+)
+def test_every_fault_has_its_place(tmp_path: Path, old: str, new: str, said: str) -> None:
+    """Line and column, what was expected and what was found."""
+    found = faults(GOOD.replace(old, new, 1), tmp_path)
+
+    assert any(said.lower() in fault.lower() for fault in found), found
+    assert all(fault.startswith("d.toml:") for fault in found)
+
+
+def test_a_design_is_found_by_name_or_path() -> None:
+    """An unknown name is told with the nearest one."""
+    assert find_design("smoke").name == "smoke.toml"
+    assert find_design("mine.toml") == Path("mine.toml")
+    with pytest.raises(ExperimentError, match="did you mean 'smoke'"):
+        find_design("smok")
