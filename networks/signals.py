@@ -1,7 +1,7 @@
 """Where signals are: at the stop lines of lanes, and what they can show.
 
-A lane has a signal if every way out of it is controlled. It shows what the most permissive of these
-ways does: who drives past a red signal had no way on which that would have been allowed.
+A lane has a signal if every way out of it is controlled. It shows what the most permissive of them
+does: who drives past a red signal had no way on which that would have been allowed.
 """
 
 from collections import defaultdict

@@ -5,6 +5,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from pathlib import Path
 
+from dyknow.kpl.syntax import Specification
 from dyknow.recordings.comparing import Difference, compare
 from dyknow.recordings.recording import Recording
 from dyknow.recordings.violations import VIOLATIONS
@@ -27,7 +28,7 @@ from traffic.request import RecordingRequest, labels_from
 from traffic.results import Replay, RunResult, StreamDifference, run_folder, write_result
 from traffic.running import scorer_for, write_network
 from traffic.sumo.replayed import TRUTH, FramePacer
-from traffic.system import outputs_behind, read_specification
+from traffic.system import outputs_behind, outputs_of, read_specification
 from traffic.watching import OnProgress, Watch, told_of
 
 __all__ = ["ReplayRequest", "replay"]
@@ -112,8 +113,7 @@ class _Replay:
             text, place = request.specification.read_text("utf-8"), str(request.specification)
         fed = take(request.taken, self._specification, recording)
         self._world = world_of(recording)
-        outputs = outputs_behind(fed, request.taken) if request.taken else None
-        self._system = system_of(recording, fed, self._world, outputs)
+        self._system = system_of(recording, fed, self._world, self._outputs(fed))
         self._description = replace(
             self._recorded, text=text, place=place, outputs=self._system.network.outputs
         )
@@ -142,6 +142,13 @@ class _Replay:
         write_origin(said.origin, said.named_text, self._system.files, folder)
         write_network(self._system.network, folder)
         write_result(result, folder)
+
+    def _outputs(self, fed: Specification) -> tuple[str, ...]:
+        """Return the output streams to compute: not those that the recorded run had no use for."""
+        taken = self._request.taken
+        unwanted = set(outputs_of(self._recorded.specification)) - {*self._recorded.outputs}
+        outputs = outputs_behind(fed, taken) if taken else outputs_of(fed)
+        return tuple(name for name in outputs if name not in unwanted)
 
     def _run(self, wanted: RecordingRequest, on_progress: OnProgress) -> RunResult:
         truth = simulation_of(self._recording)

@@ -1,6 +1,6 @@
 """One run: a scenario, simulated, watched, recognised, scored, and written to a folder."""
 
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
@@ -25,13 +25,15 @@ from traffic.request import DEFAULT_PERIOD, FRAME_PERIOD, RunRequest, View
 from traffic.results import RunResult, new_folder, run_folder, write_result
 from traffic.scoring.score import Scorer, lines_scored
 from traffic.settings import changed_specification, parameters_in
+from traffic.sumo.feeding import FrameFeed
 from traffic.sumo.opening import network_of, open_simulation
-from traffic.sumo.simulation import Frame, Simulation
+from traffic.sumo.simulation import Simulation
 from traffic.system import (
     MonitoringSystem,
     bundled_specification,
+    labels_of_sort,
+    outputs_behind,
     outputs_of,
-    outputs_of_sort,
     read_specification,
 )
 from traffic.watching import IMAGES, OnProgress, Watch, told_of
@@ -62,20 +64,20 @@ def run_scenario(request: RunRequest, on_progress: OnProgress) -> tuple[RunResul
         run_folder(path) as folder,
         open_simulation(request.scenario, folder / "sumo", traffic) as simulation,
     ):
-        vehicles = _Vehicles(simulation)
-        world = World(road_map, vehicles, camera, sensors)
+        feed = FrameFeed(simulation, road_map.signals)
+        world = World(road_map, feed.vehicles, camera, sensors, feed.signals)
         system = _system(request, specification, world)
         description = _description(request, system)
         write_origin(description.origin, description.named_text, system.files, folder)
         scorer = scorer_for(world, simulation, system)
-        vehicles.observers.append(scorer.observe_frame)
+        feed.observers.append(scorer.observe_frame)
         watch = Watch(system, scorer)
         with (
             _film(request, camera, watch),
             _recording(request, description, system, world, simulation) as keep,
         ):
             if keep is not None:
-                vehicles.observers.append(keep.observe)
+                feed.observers.append(keep.observe)
                 watch.keep_periods = keep.keep_periods
             told = told_of(description.origin)
             result = watch.complete(told, on_progress, real_time=request.real_time)
@@ -148,25 +150,6 @@ class _NoVehicles:
         yield from ()
 
 
-class _Vehicles:
-    """The source of the simulator's vehicles; shows each frame to observers as well.
-
-    Attributes:
-        observers: Who is shown each frame before it enters the network.
-    """
-
-    def __init__(self, simulation: Simulation) -> None:
-        self.observers: list[Callable[[Frame], None]] = []
-        self._simulation = simulation
-
-    def samples(self) -> Iterator[Sample[Table]]:
-        """Yield the vehicles of each frame, available at once."""
-        while (frame := self._simulation.step()) is not None:
-            for observe in self.observers:
-                observe(frame)
-            yield Sample(frame.vehicles, frame.time, frame.time)
-
-
 def scorer_for(world: World, simulation: Simulation, system: MonitoringSystem) -> Scorer:
     """Return what scores a run of *system* in *world*, by the truth that *simulation* knows."""
     footprint = world.camera.footprint() if world.camera is not None else None
@@ -198,7 +181,7 @@ def _outputs(request: RunRequest, specification: Specification) -> tuple[str, ..
         RequestError: Something is to be recognised that the specification does not tell.
     """
     names = outputs_of(specification)
-    told = outputs_of_sort(specification, _RECOGNITIONS)
+    told = outputs_behind(specification, labels_of_sort(specification, _RECOGNITIONS))
     by_name = {name.removeprefix(_RECOGNISED): name for name in told}
     if request.recognise is None:
         return names

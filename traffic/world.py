@@ -1,17 +1,28 @@
 """What surrounds the system: the map, the cameras, and chance."""
 
 import math
-from dataclasses import dataclass
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from typing import Any
 
 import numpy as np
 
 from dyknow.streams.process import Source
+from dyknow.streams.sample import Sample
 from networks.roads import RoadMap
 from perception.camera import Calibration, Camera
 from traffic.errors import ScenarioError
 from traffic.scenarios import CameraSettings
 
 __all__ = ["World", "camera_of", "generators_of"]
+
+
+class _Silence:
+    """A source that never says anything."""
+
+    def samples(self) -> Iterator[Sample[Any]]:
+        """Yield nothing."""
+        return iter(())
 
 
 @dataclass(frozen=True, slots=True)
@@ -23,12 +34,14 @@ class World:
         vehicles: The source of true vehicles, which cameras film and noise is added to.
         camera: The pose of the cameras; None if there are none.
         generator: Source of all randomness in sensors.
+        signals: The source of what all signals of the map show.
     """
 
     road_map: RoadMap
     vehicles: Source
     camera: Camera | None
     generator: np.random.Generator
+    signals: Source = field(default_factory=_Silence)
 
 
 def generators_of(seed: int) -> tuple[np.random.Generator, np.random.Generator]:

@@ -35,7 +35,7 @@ def test_signals_stand_at_the_ends_of_controlled_lanes() -> None:
 def test_a_lane_with_a_free_way_out_has_no_signal() -> None:
     """It would be red, and still one might drive on."""
     shape = np.array([[0.0, 0.0], [50.0, 0.0]])
-    lanes = tuple(Lane(f"a_{i}", shape + [0.0, 3.0 * i]) for i in range(3))
+    lanes = tuple(Lane(f"a_{i}", shape + np.array([0.0, 3.0 * i])) for i in range(3))
     edges = {"a": Edge("a", "w", "m", lanes), "b": Edge("b", "m", "e", (Lane("b_0", shape),))}
     junctions = {name: Junction(name, np.zeros(2), np.zeros((0, 2))) for name in "wme"}
     ways = [("a_0", True), ("a_1", True), ("a_1", False)]

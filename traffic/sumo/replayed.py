@@ -19,8 +19,9 @@ TRUTH = "truth/vehicles"
 
 _HIDDEN = ("lane", "lane_position")
 
-Kept = tuple[Table, tuple[str, ...], tuple[str, ...]]
-"""The columns of both tables of a frame, and the names of vehicles and lanes that are new."""
+Kept = tuple[Table, tuple[str, ...], tuple[str, ...], Table]
+"""The columns of both tables of a frame, the names of vehicles and lanes that are new, and the
+signals, which recordings of earlier versions do not have."""
 
 
 class FrameKeeper:
@@ -42,7 +43,7 @@ class FrameKeeper:
         self._n_names += len(names)
         self._n_lanes += len(lanes)
         table = frame.vehicles.with_columns(**frame.hidden.columns)
-        return Sample((table, names, lanes), frame.time, frame.time)
+        return Sample((table, names, lanes, frame.signals), frame.time, frame.time)
 
 
 class ReplayedSimulation:
@@ -64,7 +65,7 @@ class ReplayedSimulation:
 
     @property
     def lanes(self) -> Sequence[str]:
-        """The name of each lane, by its number in `Frame.hidden`."""
+        """The name of each lane, by its number in frames."""
         return self._lanes
 
     def step(self) -> Frame | None:
@@ -72,13 +73,16 @@ class ReplayedSimulation:
         sample = next(self._samples, None)
         if sample is None:
             return None
-        table, names, lanes = sample.value
+        table, names, lanes, *signals = sample.value
         self._names += names
         self._lanes += lanes
         seen = {name: column for name, column in table.columns.items() if name not in _HIDDEN}
         hidden = {name: table[name] for name in _HIDDEN}
         return Frame(
-            sample.valid_time, Table(VEHICLE, table.ids, seen), Table(VEHICLE, table.ids, hidden)
+            sample.valid_time,
+            Table(VEHICLE, table.ids, seen),
+            Table(VEHICLE, table.ids, hidden),
+            *signals,
         )
 
     def close(self) -> None:

@@ -1,7 +1,7 @@
 """What a simulation is, and what it tells at each step."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Final, Protocol
 
 import numpy as np
@@ -10,10 +10,21 @@ import numpy.typing as npt
 from dyknow.streams.table import Table
 from dyknow.time import TimePoint
 
-__all__ = ["VEHICLE", "VEHICLE_CLASSES", "Frame", "Simulation", "class_code", "headings_of"]
+__all__ = [
+    "SIGNAL",
+    "VEHICLE",
+    "VEHICLE_CLASSES",
+    "Frame",
+    "Simulation",
+    "class_code",
+    "headings_of",
+]
 
 VEHICLE: Final = "vehicle"
-"""The sort of the objects in a frame."""
+"""The sort of the vehicles in a frame."""
+
+SIGNAL: Final = "signal"
+"""The sort of the signals in a frame."""
 
 VEHICLE_CLASSES: Final = (
     "passenger", "delivery", "truck", "bus", "motorcycle", "bicycle", "other",
@@ -31,9 +42,13 @@ _CODE_BY_SUMO_CLASS = {
 }  # fmt: skip
 
 
+def _no_signals() -> Table:
+    return Table(SIGNAL, (), {"state": np.empty(0, dtype=np.int8)})
+
+
 @dataclass(slots=True)
 class Frame:
-    """All vehicles at one time; immutable by convention.
+    """All vehicles and signals at one time; immutable by convention.
 
     Attributes:
         time: Since the begin of the scenario.
@@ -45,11 +60,14 @@ class Frame:
             position in `Simulation.lanes`, -1 off the road; `lane_position` (n,), metres of the
             front bumper along that lane. A vehicle on the opposite lane is on a lane of the
             other direction.
+        signals: What the signal of each lane shows that has one. The id is the number of the lane
+            in `Simulation.lanes`; column `state` (n,), int8, of `networks.signals.SignalState`.
     """
 
     time: TimePoint
     vehicles: Table
     hidden: Table
+    signals: Table = field(default_factory=_no_signals)
 
 
 class Simulation(Protocol):
@@ -61,7 +79,7 @@ class Simulation(Protocol):
 
     @property
     def lanes(self) -> Sequence[str]:
-        """The name of each lane, by its number in `Frame.hidden`; grows."""
+        """The name of each lane, by its number in frames; grows."""
 
     def step(self) -> Frame | None:
         """Return the next frame, beginning with that of time 0, or None after the last."""

@@ -23,6 +23,7 @@ from traffic.sumo.bodies import Bodies
 from traffic.sumo.colours import random_colours
 from traffic.sumo.libraries import load_simulator
 from traffic.sumo.output import CapturedOutput
+from traffic.sumo.signals import SignalReader
 from traffic.sumo.simulation import VEHICLE, Frame, class_code, headings_of
 
 __all__ = ["SumoSettings", "SumoSimulation"]
@@ -74,7 +75,8 @@ class SumoSimulation:
         self._output: CapturedOutput | None = CapturedOutput(settings.messages)
         self._libsumo = load_simulator()
         self._faults = (self._libsumo.TraCIException, self._libsumo.FatalTraCIError)
-        self._vehicles = _Vehicles(self._libsumo, colours)
+        self._lanes = _Numbers()
+        self._vehicles = _Vehicles(self._libsumo, self._lanes, colours)
         self._director = Director(settings.acts)
         step_length = settings.step_length / SECOND
         self._stage = Stage(self._libsumo, settings.vehicle_types, step_length)
@@ -88,8 +90,8 @@ class SumoSimulation:
 
     @property
     def lanes(self) -> Sequence[str]:
-        """SUMO's id of each lane, by its number in `Frame.hidden`."""
-        return self._vehicles.lanes
+        """SUMO's id of each lane, by its number in frames."""
+        return self._lanes.names
 
     @property
     def time(self) -> TimePoint:
@@ -135,6 +137,7 @@ class SumoSimulation:
         self._libsumo.start(
             ["sumo", "-c", str(settings.configuration), "--step-length", step, "--no-step-log"]
         )
+        self._signals = SignalReader(self._libsumo, self._lanes.of)
         n_before = settings.warm_up // settings.step_length
         for i in range(-n_before, 0):
             self._step_to(TimePoint(i * settings.step_length))
@@ -147,7 +150,7 @@ class SumoSimulation:
 
     def _advance(self) -> Frame:
         self._step_to(self.time)
-        return self._vehicles.read(self.time)
+        return self._vehicles.read(self.time, self._signals.read())
 
     def _call(self, doing: str, function: Any) -> Any:
         """Call *function*; if SUMO objects, end SUMO and say all it said."""
@@ -175,20 +178,21 @@ class SumoSimulation:
 class _Vehicles:
     """Reads the state of all vehicles; remembers what never changes."""
 
-    def __init__(self, libsumo: ModuleType, colours: np.random.Generator) -> None:
+    def __init__(
+        self, libsumo: ModuleType, lanes: "_Numbers", colours: np.random.Generator
+    ) -> None:
         self._api: Any = libsumo.vehicle
         self._generator = colours
+        self._lanes = lanes
         self.names: list[str] = []
-        self.lanes: list[str] = []
         self._number: dict[str, int] = {}
-        self._lane_number: dict[str, int] = {"": -1}
         self._size = np.empty((64, 3))
         self._colour = np.empty((64, 3), dtype=np.uint8)
         self._class = np.empty(64, dtype=np.int8)
         self._bodies = Bodies()
 
-    def read(self, time: TimePoint) -> Frame:
-        """Return the state of all vehicles that are somewhere."""
+    def read(self, time: TimePoint, signals: Table) -> Frame:
+        """Return the state of all vehicles that are somewhere, and of *signals*."""
         api = self._api
         names: Sequence[str] = api.getIDList()
         numbers = self._numbers(names)
@@ -196,7 +200,7 @@ class _Vehicles:
         angle = np.array(list(map(api.getAngle, names)), dtype=np.float64)
         speed = np.array(list(map(api.getSpeed, names)), dtype=np.float64)
         along = np.array(list(map(api.getLanePosition, names)), dtype=np.float64)
-        lane = np.array([self._lane(name) for name in map(api.getLaneID, names)], dtype=np.int32)
+        lane = np.array([*map(self._lanes.of, map(api.getLaneID, names))], dtype=np.int32)
         length, width, height = self._size[numbers].T
         heading = self._bodies.headings(numbers, front, headings_of(angle), length)
         forward = np.column_stack([np.cos(heading), np.sin(heading)])
@@ -218,7 +222,7 @@ class _Vehicles:
         somewhere = front[:, 0] > _NO_POSITION
         if not somewhere.all():
             vehicles, hidden = vehicles.select(somewhere), hidden.select(somewhere)
-        return Frame(time, vehicles, hidden)
+        return Frame(time, vehicles, hidden, signals)
 
     def _numbers(self, names: Sequence[str]) -> npt.NDArray[np.int64]:
         find = self._number.get
@@ -246,9 +250,22 @@ class _Vehicles:
         self._colour[number] = own
         return number
 
-    def _lane(self, name: str) -> int:
-        number = self._lane_number.get(name)
+
+class _Numbers:
+    """Numbers lanes in the order in which they come up.
+
+    Attributes:
+        names: Of the lanes, by number.
+    """
+
+    def __init__(self) -> None:
+        self.names: list[str] = []
+        self._number: dict[str, int] = {"": -1}
+
+    def of(self, name: str) -> int:
+        """Return the number of a lane, -1 for none."""
+        number = self._number.get(name)
         if number is None:
-            number = self._lane_number[name] = len(self.lanes)
-            self.lanes.append(name)
+            number = self._number[name] = len(self.names)
+            self.names.append(name)
         return number

@@ -163,9 +163,10 @@ def test_the_truth_stands_beside_the_streams(recorded_run):
         first = {label: next(recording.samples(label), None) for label in labels}
 
     assert len(frames) == 71
-    table, names, lanes = frames[0].value
+    table, names, lanes, signals = frames[0].value
     assert {"lane", "lane_position", "position"} <= set(table.columns)
     assert names
     assert lanes
+    assert len(signals) == 8  # the lanes that lead to the middle of the town
     for sample in first.values():
         assert "lane_position" not in getattr(getattr(sample, "value", None), "columns", {})
