@@ -8,9 +8,10 @@ Read in this order:
   included, put in; `timing`: when instants can be
 - `declared`: what a file declares; `naming`, `circles`, `event_types`, `uses`, `bindings`: what
   can be wrong; `check`: every fault of a file; `comments`: what is said about a chronicle
-- `events`: what goes in and comes out; `acceptance`: which events are as declared; `semantics`: what chronicles mean
+- `events`: what goes in and comes out; `acceptance`: which events are as declared; `semantics`:
+  what chronicles mean
 - `patterns` and `models`: chronicles prepared for recognition; `boundedness`: what may be awaited
-  without end
+  without end; `unused`: what nothing uses
 - `instances`: partial instances and how they are found; `counting`; `matching`: which instances
   begin, go on, complete, or die; `joining`: how an event joins them; `reporting`: which matches
   are reported; `prospects`: partial instances as people see them

@@ -14,7 +14,7 @@ from chronicles.events import Event
 from chronicles.models import Counter, Model
 from chronicles.patterns import Values, projection
 
-__all__ = ["Agenda", "Bucket", "Index", "Instance", "Key", "Stage", "Watch"]
+__all__ = ["Agenda", "Bucket", "Entry", "Index", "Instance", "Key", "Stage", "Watch"]
 
 
 class Instance:
@@ -54,7 +54,9 @@ Index = dict[Values, Bucket]
 Key = Callable[[Values], Values]
 """From the values of an instance to those that it is found by."""
 
-_Entry = tuple[Index, Key | None]
+Entry = tuple[Index, Key | None]
+"""An index, and how instances are found by it; None if by all their values."""
+
 _Change = Callable[[Instance], None]
 
 
@@ -95,7 +97,10 @@ class Stage:
         watches: The counters whose events matter to these instances.
         add: Takes in an instance; there is none before `seal`.
         remove: Forgets an instance and every entry about it.
+        entries: The indexes, each with what finds the key of an instance; none before `seal`.
         admit: Decides about a new instance; set by whom the stage belongs to.
+        schedule: What a new instance is given to with the time after its deadline, if that is
+            all there is to decide; set likewise.
         review: Decides about an instance that is due at a time; set likewise.
     """
 
@@ -115,10 +120,11 @@ class Stage:
         self.variables = tuple(name for name in model.variables if name in bound)
         self.add: _Change
         self.remove: _Change
-        self._is_sealed = False
+        self.entries: tuple[Entry, ...] = ()
+        self.schedule: Callable[[Instance, int], None] | None = None
         self.admit: Callable[[Instance, int], None]
         self.review: Callable[[Instance, int], None]
-        self._indexes: dict[tuple[str, ...], _Entry] = {}
+        self._indexes: dict[tuple[str, ...], Entry] = {}
         self.watches = tuple(
             self._watch(counter)
             for counter in model.counters
@@ -137,7 +143,7 @@ class Stage:
         It is made when it is first asked for, which must be before `seal`.
         """
         if variables not in self._indexes:
-            assert not self._is_sealed
+            assert not self.entries
             self._indexes[variables] = {}, projection(self.variables, variables)
         return self._indexes[variables][0]
 
@@ -158,9 +164,8 @@ class Stage:
         """Make ready for the first instance: all indexes have been asked for."""
         if not self._indexes:
             self.index_by(())
-        self._is_sealed = True
-        entries = tuple(self._indexes.values())
-        self.add, self.remove = _adder(entries), _remover(entries)
+        self.entries = tuple(self._indexes.values())
+        self.add, self.remove = _adder(self.entries), _remover(self.entries)
 
 
 class Agenda:
@@ -237,7 +242,7 @@ class Agenda:
         self._n_stale = 0
 
 
-def _adder(entries: tuple[_Entry, ...]) -> _Change:
+def _adder(entries: tuple[Entry, ...]) -> _Change:
     if len(entries) > 1:
         adders = [_adder((entry,)) for entry in entries]
 
@@ -259,7 +264,7 @@ def _adder(entries: tuple[_Entry, ...]) -> _Change:
     return add
 
 
-def _remover(entries: tuple[_Entry, ...]) -> _Change:
+def _remover(entries: tuple[Entry, ...]) -> _Change:
     if len(entries) > 1:
         removers = [_remover((entry,)) for entry in entries]
 

@@ -8,7 +8,7 @@ taking that event away leaves the parts that it joined, every match is found exa
 whatever the order in which the events of one instant are listed.
 
 For each slot and each combination of stages that an event can join, a *recipe* is made once:
-a function that holds the index to look into, the limits to test, and the places of the values.
+a function that knows the index to look into, the limits to test, and the places of the values.
 """
 
 from collections.abc import Callable, Iterable, Sequence
@@ -21,11 +21,9 @@ from chronicles.events import Event
 from chronicles.instances import Instance, Stage
 from chronicles.models import Model, Slot
 from chronicles.patterns import Values, projection
+from chronicles.writing import Limits, Recipe, Source, written_beginning, written_joining
 
-__all__ = ["Joiner", "Recipe"]
-
-Recipe = Callable[[Event, int, Values], None]
-"""Joins an event with what it fits to, given its time and the values of its slot's variables."""
+__all__ = ["Joiner"]
 
 _Find = Callable[[int, Values], Iterable[Instance]]
 
@@ -38,29 +36,31 @@ class Joiner:
 
     Args:
         model: The chronicle.
-        new_stage: Makes the stage of the slots in a set of bits.
+        prepare: Makes a new stage ready for instances.
 
     Attributes:
         stages: The stages made so far, by the set of their slots.
         recipes: For each slot what to do with an event.
     """
 
-    def __init__(self, model: Model, new_stage: Callable[[int], Stage]) -> None:
+    def __init__(self, model: Model, prepare: Callable[[Stage], None]) -> None:
         self._model = model
-        self._new_stage = new_stage
+        self._prepare = prepare
         self._combinations: list[list[tuple[Stage, ...]]] = [[()] for _ in model.slots]
         self.stages: dict[int, Stage] = {}
         self.recipes: list[list[Recipe]] = [[] for _ in model.slots]
         for slot in model.slots:
             if self._is_possible(1 << slot.index, slot.neighbours):
-                self.recipes[slot.index].append(self._beginning(slot))
+                self.recipes[slot.index].append(self._begin_first(slot))
 
     def _stage(self, mask: int) -> Stage:
         stage = self.stages.get(mask)
         if stage is None:
-            stage = self.stages[mask] = self._new_stage(mask)
+            stage = self.stages[mask] = Stage(self._model, mask)
             for i in stage.awaited:
                 self._add_recipes(self._model.slots[i], stage)
+            stage.seal()
+            self._prepare(stage)
         return stage
 
     def _add_recipes(self, slot: Slot, stage: Stage) -> None:
@@ -86,35 +86,26 @@ class Joiner:
         awaited = [i for i in slots if near & ~mask & 1 << i]
         return all(self._model.limits[i][j] >= 0 for i in filled for j in awaited)
 
-    def _beginning(self, slot: Slot) -> Recipe:
+    def _begin_first(self, slot: Slot) -> Recipe:
+        """Return what writes the recipe for an event that joins nothing, when there is one."""
+        recipes = self.recipes[slot.index]
+
+        def begin_first(event: Event, now: int, values: Values) -> None:
+            step = self._begin(slot)
+            recipes[recipes.index(begin_first)] = step
+            step(event, now, values)
+
+        return begin_first
+
+    def _begin(self, slot: Slot) -> Recipe:
         """Return the recipe for an event that joins nothing."""
-        at = slot.index
+        mask = 1 << slot.index
         windows = [NEVER if s.latest >= UNBOUNDED else s.latest for s in self._model.slots]
+        source = Source(
+            self._arrangement(slot.pattern.variables, mask), self._restriction(mask, ())
+        )
         reach = self._reach(slot, ())
-        is_windowed = any(windows[j] < NEVER for j, _ in reach)
-        arrange = self._arrangement(slot.pattern.variables, 1 << at)
-        allows = self._restriction(1 << at, ())
-        nothing_yet: list[Event | None] = [None] * len(windows)
-        stage: Stage | None = None
-
-        def begin(event: Event, now: int, values: Values) -> None:
-            nonlocal stage
-            arranged = values if arrange is None else arrange(values)
-            if allows is not None and not allows(arranged):
-                return
-            times = windows.copy()
-            for j, limit in reach:
-                times[j] = now + limit
-            if is_windowed:
-                times = list(map(min, times, windows))
-            times[at] = now
-            events = nothing_yet.copy()
-            events[at] = event
-            if stage is None:
-                stage = self._stage(1 << at)
-            stage.admit(Instance(stage, arranged, times, events), now)
-
-        return begin
+        return written_beginning(slot.index, windows, reach, source, self._stage(mask))
 
     def _joining(self, slot: Slot, parts: tuple[Stage, ...]) -> Recipe:
         """Return the recipe for an event that joins one instance of each of *parts*."""
@@ -146,56 +137,26 @@ class Joiner:
         return join
 
     def _going_on(self, slot: Slot, part: Stage) -> Recipe:
-        """Return the recipe for an event that joins one instance, the usual case."""
-        at = slot.index
+        """Return the recipe for an event that joins one instance, the usual case.
+
+        It is written when an event first finds an instance, so that nothing is made of the many
+        steps that no instance ever takes.
+        """
         shared = _shared(slot, part)
         index = part.index_by(shared)
         key = projection(slot.pattern.variables, shared)
-        pauses = self._pauses(slot, part)
-        join = self._extension(slot, part)
+        mask = part.mask | 1 << slot.index
+        recipes = self.recipes[slot.index]
 
-        def go_on(event: Event, now: int, values: Values) -> None:
-            bucket = index.get(key(values) if key else values)
-            if bucket is None:
-                return
-            for instance in bucket:
-                if now > instance.times[at]:
-                    continue
-                for i, pause in pauses:
-                    if now - instance.times[i] < pause:
-                        break
-                else:
-                    join(instance, event, now, values)
+        def go_on_first(event: Event, now: int, values: Values) -> None:
+            if (key(values) if key else values) in index:
+                limits = self._pauses(slot, part), self._reach(slot, part.filled)
+                source = Source(self._combination(slot, part), self._restriction(mask, (part,)))
+                step = written_joining(slot.index, index, key, limits, source, self._stage(mask))
+                recipes[recipes.index(go_on_first)] = step
+                step(event, now, values)
 
-        return go_on
-
-    def _extension(
-        self, slot: Slot, part: Stage
-    ) -> Callable[[Instance, Event, int, Values], None]:
-        """Return what makes the instance that an event and one that it fits to are together."""
-        at = slot.index
-        mask = part.mask | 1 << at
-        reach = self._reach(slot, part.filled)
-        combine = self._combination(slot, part)
-        allows = self._restriction(mask, (part,))
-        stage: Stage | None = None
-
-        def extend(instance: Instance, event: Event, now: int, values: Values) -> None:
-            nonlocal stage
-            arranged = combine(instance.values, values) if combine else instance.values
-            if allows is not None and not allows(arranged):
-                return
-            times = instance.times.copy()
-            times[at] = now
-            for j, limit in reach:
-                times[j] = min(times[j], now + limit)
-            events = instance.events.copy()
-            events[at] = event
-            if stage is None:
-                stage = self._stage(mask)
-            stage.admit(Instance(stage, arranged, times, events), now)
-
-        return extend
+        return go_on_first
 
     def _combination(self, slot: Slot, part: Stage) -> Callable[[Values, Values], Values] | None:
         """Return what puts the values of an instance and of an event together.
@@ -229,7 +190,7 @@ class Joiner:
 
         return find
 
-    def _pauses(self, slot: Slot, part: Stage) -> tuple[tuple[int, int], ...]:
+    def _pauses(self, slot: Slot, part: Stage) -> Limits:
         """Return after which slots of *part* a time must pass until *slot*, and which.
 
         Left out is what follows from the others and from the order in which events come.
@@ -242,7 +203,7 @@ class Joiner:
                 del asked[i]
         return tuple(asked.items())
 
-    def _reach(self, slot: Slot, filled: Sequence[int]) -> tuple[tuple[int, int], ...]:
+    def _reach(self, slot: Slot, filled: Sequence[int]) -> Limits:
         """Return which slots an event of *slot* limits, and how much later they can be.
 
         Left out are the slots in *filled*, and those that the events of these limit as much.

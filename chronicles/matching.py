@@ -9,16 +9,16 @@ their last event comes, only to be refused.
 
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
-from functools import partial
 from operator import itemgetter
 
 from chronicles.constraints import INSTANT, NEVER, UNBOUNDED
 from chronicles.counting import CountedEvents
 from chronicles.events import Event
 from chronicles.instances import Agenda, Instance, Stage, Watch
-from chronicles.joining import Joiner, Recipe
+from chronicles.joining import Joiner
 from chronicles.models import Counter, Model, Slot
 from chronicles.patterns import Values
+from chronicles.writing import Recipe
 
 __all__ = ["Handler", "Listener", "Matcher"]
 
@@ -67,7 +67,7 @@ class Matcher:
         self._notices: dict[Counter, list[_Notice]] = {c: [] for c in model.counters}
         self._counted = {c: CountedEvents(c) for c in model.counters if c.looks_back}
         self._n_instances = 0
-        self._joiner = Joiner(model, self._new_stage)
+        self._joiner = Joiner(model, self._prepare)
         self.counting = [(c.pattern, self._counting(c)) for c in model.counters]
         self.filling = [(s.pattern, self._filling(s)) for s in model.slots]
 
@@ -122,28 +122,22 @@ class Matcher:
 
     # Instances.
 
-    def _new_stage(self, mask: int) -> Stage:
-        stage = Stage(self.model, mask)
-        stage.admit = partial(self._admit_first, stage)
+    def _prepare(self, stage: Stage) -> None:
+        """Make a new stage ready for instances."""
         for watch in stage.watches:
             self._notices[watch.counter].append(self._noticing(stage, watch))
-        return stage
-
-    def _admit_first(self, stage: Stage, instance: Instance, now: int) -> None:
-        """Take in the first instance of *stage*, when everything about the stage is known."""
-        stage.seal()
-        stage.admit = self._admission(stage)
-        stage.review = self._judge if stage.is_complete else self._expiry(stage)
-        stage.admit(instance, now)
+        if stage.is_complete:
+            stage.admit, stage.review = self._completion(), self._judge
+            return
+        stage.admit, stage.review = self._admission(stage), self._expiry(stage)
+        looks_back = any(watch.counter.looks_back for watch in stage.watches)
+        if self._listener.limit is None and not looks_back:
+            stage.schedule = self._agenda.schedule
 
     def _admission(self, stage: Stage) -> Callable[[Instance, int], None]:
-        """Return what takes in a new instance, unless it is dead or complete already."""
-        if stage.is_complete:
-            return self._completion()
+        """Return what takes in a new instance, unless it is dead already."""
         looking_back = tuple(watch for watch in stage.watches if watch.counter.looks_back)
         earliest = _earliest_of(stage.awaited)
-        schedule = self._agenda.schedule
-        add = stage.add if self._listener.limit is None else self._add
 
         def admit(instance: Instance, now: int) -> None:
             for watch in looking_back:
@@ -151,9 +145,9 @@ class Matcher:
                     return
             deadline = earliest(instance.times)
             if deadline >= now:
-                add(instance)
+                self._add(instance)
                 if deadline < NEVER:
-                    schedule(instance, deadline + INSTANT)
+                    self._agenda.schedule(instance, deadline + INSTANT)
 
         return admit
 
