@@ -13,8 +13,9 @@ Read in this order:
 - `patterns` and `models`: chronicles prepared for recognition; `boundedness`: what may be awaited
   without end; `unused`: what nothing uses
 - `instances`: partial instances and how they are found; `counting`; `matching`: which instances
-  begin, go on, complete, or die; `joining`: how an event joins them; `reporting`: which matches
-  are reported; `prospects`: partial instances as people see them
+  begin, go on, complete, or die; `joining`: how an event joins them; `writing`: the functions
+  that do so, written out for each chronicle; `routing`: which chronicles an event concerns;
+  `reporting`: which matches are reported; `prospects`: partial instances as people see them
 - `recognition`: the recogniser; `ordering`: samples in the order of their valid times;
   `processes`: the recogniser on streams; `recognised`: what it recognises as events for others;
   `marking`: the objects that it was about
