@@ -13,6 +13,7 @@ from traffic.commands import (
     benchmark,
     check,
     chronicles,
+    compare,
     experiment,
     inspect,
     judge,
@@ -40,6 +41,7 @@ app.command("run")(run.run)
 app.command("replay")(replay.replay)
 app.command("recover")(recover.recover)
 app.command("report")(report.report)
+app.command("compare")(compare.compare)
 app.command("experiment")(experiment.experiment)
 app.command("inspect")(inspect.inspect)
 app.command("judge")(judge.judge)

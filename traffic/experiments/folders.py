@@ -75,6 +75,11 @@ class ExperimentFolder:
     path: Path
 
     @property
+    def is_there(self) -> bool:
+        """Whether the folder holds an experiment, finished or not."""
+        return self._basis_file.is_file()
+
+    @property
     def design(self) -> Path:
         """The design as it was written."""
         return self.path / "design.toml"

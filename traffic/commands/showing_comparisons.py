@@ -1,0 +1,77 @@
+"""The table of a comparison."""
+
+from pydantic_core import to_json
+from rich.box import SIMPLE_HEAD
+from rich.console import Console
+from rich.markup import escape
+from rich.table import Table
+
+from traffic.experiments.comparing import CellKey, Comparison, Difference
+from traffic.experiments.measures import Share
+
+__all__ = ["json_from_comparison", "show_comparison"]
+
+
+def show_comparison(comparison: Comparison) -> None:
+    """Print both sides of each measure of each cell, and where the difference lies."""
+    caption = (
+        "in brackets, where the difference lies with a confidence of 95 % (Newcombe); "
+        "of twenty comparisons of equals, one looks clear by chance"
+    )
+    factors = (
+        [name for name, _ in comparison.differences[0].cell] if comparison.differences else []
+    )
+    table = Table(
+        *map(escape, factors),
+        "measure",
+        escape(comparison.one),
+        escape(comparison.other),
+        "difference",
+        box=SIMPLE_HEAD,
+        caption=caption,
+    )
+    for each in comparison.differences:
+        sides = (_share(each.one), _share(each.other))
+        levels = [escape(str(level)) for _, level in each.cell]
+        table.add_row(*levels, escape(each.measure), *sides, _difference(each))
+    console = Console()
+    console.print(table)
+    for name, cell in comparison.only:
+        console.print(f"only {escape(name)} has {_cell(cell)}", highlight=False)
+
+
+def json_from_comparison(comparison: Comparison) -> str:
+    """Return a comparison as one JSON document."""
+    differences = [
+        {
+            "cell": dict(each.cell),
+            "measure": each.measure,
+            "one": each.one._asdict(),
+            "other": each.other._asdict(),
+            **each.interval._asdict(),
+            "clear": each.is_clear,
+        }
+        for each in comparison.differences
+    ]
+    only = [{"side": name, "cell": dict(cell)} for name, cell in comparison.only]
+    sides = {"one": comparison.one, "other": comparison.other}
+    return to_json({**sides, "differences": differences, "only": only}, indent=1).decode()
+
+
+def _cell(cell: CellKey) -> str:
+    return escape(", ".join(f"{name} {level}" for name, level in cell)) or "all"
+
+
+def _share(share: Share) -> str:
+    if share.value is None:
+        return "[dim]–[/]"
+    return f"{share.value:.1%} [dim]of {share.trials}[/]"
+
+
+def _difference(each: Difference) -> str:
+    if each.one.value is None or each.other.value is None:
+        return "[dim]–[/]"
+    low, high = each.interval
+    text = f"{each.other.value - each.one.value:+.1%} ({low:+.1%} to {high:+.1%})"
+    colour = "green" if low > 0 else "red"
+    return f"[{colour}]{text}[/]" if each.is_clear else f"[dim]{text}[/]"
