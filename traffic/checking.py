@@ -3,20 +3,24 @@
 from collections.abc import Callable, Mapping
 from pathlib import Path
 
+from chronicles import boundedness
 from chronicles import check as chronicle_check
+from chronicles import unused as chronicles_unused
 from chronicles.parser import parse_chronicles
 from dyknow.errors import SpecificationError, SpecificationErrors
+from dyknow.kpl import unused
 from dyknow.kpl.check import faults_of_text
 from dyknow.kpl.parser import read_specification
-from dyknow.kpl.unused import warnings
 from dyknow.mtl.declarations import document_faults
 from dyknow.mtl.parser import parse_document
+from dyknow.source_text import Span
 from traffic.errors import RequestError, ScenarioError
 from traffic.scenarios import read_scenario
 
 __all__ = ["faults_of_file", "warnings_of_file"]
 
 Faults = list[SpecificationError]
+Warnings = list[tuple[Span, str]]
 
 
 def faults_of_file(path: Path) -> list[str]:
@@ -45,13 +49,14 @@ def faults_of_file(path: Path) -> list[str]:
 def warnings_of_file(path: Path) -> list[str]:
     """Return a text for each thing in a file without faults that may not be meant so.
 
-    These are the declarations of a specification that no output stream needs.
+    These are the declarations of a specification that no output stream needs, and of chronicles
+    those that nothing uses and the events that they may await without end.
     """
-    if path.suffix != ".kpl":
+    find = _WARNINGS_BY_ENDING.get(path.suffix)
+    if find is None:
         return []
-    reading = read_specification(path.read_text(encoding="utf-8"), str(path))
-    found = warnings(reading.specification)
-    return [f"{each.span.place}: warning: {each.message}\n{each.span.excerpt()}" for each in found]
+    found = find(path.read_text(encoding="utf-8"), str(path))
+    return [f"{span.place}: warning: {message}\n{span.excerpt()}" for span, message in found]
 
 
 def _faults_of_scenario(path: Path) -> list[str]:
@@ -76,8 +81,25 @@ def _faults_of_formula(text: str, name: str) -> Faults:
         return [error]
 
 
+def _warnings_of_specification(text: str, name: str) -> Warnings:
+    found = unused.warnings(read_specification(text, name).specification)
+    return [(each.span, each.message) for each in found]
+
+
+def _warnings_of_chronicles(text: str, name: str) -> Warnings:
+    file = parse_chronicles(text, name)
+    pairs = [(each.span, each.message) for each in chronicles_unused.warnings(file)]
+    pairs += [(each.span, each.message) for each in boundedness.warnings(file)]
+    return sorted(pairs, key=lambda pair: pair[0].start)
+
+
 _FAULTS_BY_ENDING: Mapping[str, Callable[[str, str], Faults]] = {
     ".kpl": faults_of_text,
     ".chronicle": _faults_of_chronicles,
     ".mtl": _faults_of_formula,
+}
+
+_WARNINGS_BY_ENDING: Mapping[str, Callable[[str, str], Warnings]] = {
+    ".kpl": _warnings_of_specification,
+    ".chronicle": _warnings_of_chronicles,
 }

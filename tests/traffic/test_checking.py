@@ -91,3 +91,21 @@ def test_all_faults_of_a_specification_are_told_at_once(tmp_path):
     places = [fault.split(": ")[0].removeprefix(f"{path}:") for fault in faults_of_file(path)]
 
     assert places == ["1:13", "2:13", "3:14", "4:12"]
+
+
+def test_chronicles_are_warned_of(tmp_path):
+    """What may be awaited without end, and declarations that nothing uses, have their place."""
+    path = tmp_path / "c.chronicle"
+    path.write_text(
+        "attribute p[?x]\ndomain D = {a}\nmessage m[?x]\n"
+        "chronicle c[?x] {\n    event(p[?x]:(?, true), t1)\n    event(p[?x]:(true, ?), t2)\n"
+        "    t1 < t2\n}\n"
+    )
+
+    assert faults_of_file(path) == []
+    assert [text.split("\n")[0] for text in warnings_of_file(path)] == [
+        f"{path}:2:1: warning: 'D' is not used",
+        f"{path}:3:1: warning: 'm' is not used",
+        f"{path}:6:5: warning: chronicle 'c' may await this event without end: nothing limits how"
+        " long after 't1' 't2' can be",
+    ]
