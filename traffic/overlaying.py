@@ -34,7 +34,8 @@ class Overlay:
     """Receives images, cars and recognitions, and writes a frame for each pair of images.
 
     A car's box is where the car was last believed to be, carried on to the time of the image at
-    its velocity; boxes of cars that are only predicted are grey. Close it to keep the film.
+    its velocity; boxes of cars that are only predicted are grey. Those of reckless drivers say so.
+    Close it to keep the film.
 
     Args:
         working: File to write to.
@@ -51,6 +52,7 @@ class Overlay:
         self._cars: Sample[Table] | None = None
         self._recent: deque[Table] = deque(maxlen=_TRAIL_TABLES)
         self._captions: deque[tuple[TimePoint, str]] = deque(maxlen=_MAX_CAPTIONS)
+        self._reckless: frozenset[int] = frozenset()
 
     def receive_colour(self, sample: Sample[Image]) -> None:
         """Take in a colour image."""
@@ -72,6 +74,11 @@ class Overlay:
         """Take in the cars that are believed in."""
         self._cars = sample
         self._recent.append(sample.value)
+
+    def receive_reckless_drivers(self, sample: Sample[Table]) -> None:
+        """Take in which cars belong to reckless drivers."""
+        drivers = sample.value
+        self._reckless = frozenset(drivers["car"].tolist()) if len(drivers) else frozenset()
 
     def receive_recognitions(self, sample: Sample[tuple[Recognition, ...]]) -> None:
         """Take in what was recognised."""
@@ -98,11 +105,14 @@ class Overlay:
         corners = _corners(cars.select(seen), centre[seen])
         pixels = self._camera.image_from_ground(corners.reshape(-1, 2)).reshape(-1, 4, 2)
         return [
-            Mark(cars.symbol(car), outline, _colour(car) if observed else _PREDICTED)
+            Mark(self._label(cars, car), outline, _colour(car) if observed else _PREDICTED)
             for car, observed, outline in zip(
                 cars.ids[seen].tolist(), cars["observed"][seen].tolist(), pixels, strict=True
             )
         ]
+
+    def _label(self, cars: Table, car: int) -> str:
+        return f"{cars.symbol(car)}{' reckless' if car in self._reckless else ''}"
 
     def _trails(self) -> list[Trail]:
         places: dict[int, list[Points]] = {}

@@ -18,6 +18,7 @@ from traffic.errors import ResultError
 __all__ = [
     "Lateness",
     "Manoeuvre",
+    "RecklessDriverResult",
     "RecognitionResult",
     "Replay",
     "RunResult",
@@ -199,6 +200,26 @@ class Replay(_Value):
         return bool(self.differences) and not self.changes
 
 
+class RecklessDriverResult(_Value):
+    """A car that did something reckless, and for how long it counted as a reckless driver.
+
+    Attributes:
+        symbol: Of the reckless driver.
+        car: The symbol of its car.
+        since: When the car was linked to it, milliseconds.
+        until: When that was dropped; None if it still stood at the end.
+        acts: How many reckless acts of the car were recognised.
+        last_act_at: When the last of them was, milliseconds.
+    """
+
+    symbol: str
+    car: str
+    since: float
+    until: float | None
+    acts: int
+    last_act_at: float
+
+
 class RunResult(_Value):
     """Everything that `traffic report` shows of a run.
 
@@ -212,6 +233,7 @@ class RunResult(_Value):
         violations: How many violations of policies each stream had; without those that had none.
         failures: The processes that failed and ended while the rest went on, a line each.
         replay: If the run was a replay, how it compares with what was recorded.
+        reckless_drivers: In the order in which they became so; None if nobody looked for them.
     """
 
     scenario: str
@@ -223,6 +245,7 @@ class RunResult(_Value):
     violations: dict[str, int] = {}
     failures: list[str] = []
     replay: Replay | None = None
+    reckless_drivers: list[RecklessDriverResult] | None = None
 
 
 def car_names(arguments: Mapping[str, str]) -> tuple[str, ...]:

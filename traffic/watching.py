@@ -16,11 +16,12 @@ from dyknow.service.governor import GovernorSettings, LoadGovernor
 from dyknow.streams.sample import Sample
 from dyknow.time import MILLISECOND, SECOND, Duration, TimePoint, text_from_duration
 from traffic.errors import RequestError
+from traffic.features.reckless import RecklessCars
 from traffic.origin import Origin
 from traffic.overlaying import Overlay
 from traffic.recording.periods import KeepPeriods
 from traffic.request import View
-from traffic.results import Lateness, RunResult, Timing
+from traffic.results import Lateness, RecklessDriverResult, RunResult, Timing
 from traffic.scoring.score import Scorer, Verdict, unjudged
 from traffic.system import (
     MonitoringSystem,
@@ -34,6 +35,7 @@ IMAGES = ("colour_images", "thermal_images")
 
 _CARS = "cars"
 _RECOGNITIONS = "recognitions"
+_RECKLESS_DRIVERS = "reckless_drivers"
 
 OnProgress = Callable[[float, float], None]
 """Told the seconds simulated so far and the seconds in all."""
@@ -105,6 +107,11 @@ class Watch:
         self._failures: list[str] = []
         told = set(outputs_of_sort(system.specification, _RECOGNITIONS))
         self._outputs = [name for name in self._network.outputs if name in told]
+        reckless = outputs_of_sort(system.specification, _RECKLESS_DRIVERS)
+        self._reckless = [name for name in self._network.outputs if name in reckless]
+        self._reckless_cars = RecklessCars()
+        for output in self._reckless:
+            self._network.subscribe(output, self._reckless_cars.receive)
         if self._scorer is not None:
             self._network.subscribe(_CARS, self._scorer.observe_cars)
         for output in self._outputs:
@@ -127,6 +134,8 @@ class Watch:
         self._network.subscribe(_CARS, overlay.receive_cars)
         for output in self._outputs:
             self._network.subscribe(output, overlay.receive_recognitions)
+        for output in self._reckless:
+            self._network.subscribe(output, overlay.receive_reckless_drivers)
 
     def complete(
         self,
@@ -174,6 +183,7 @@ class Watch:
             ),
             violations=dict(self._violations),
             failures=self._failures,
+            reckless_drivers=self._reckless_drivers() if self._reckless else None,
         )
 
     def _verdict(self) -> Verdict:
@@ -181,6 +191,19 @@ class Watch:
         if self._scorer is None:
             return unjudged(self._recognitions)
         return self._scorer.judge(self._recognitions)
+
+    def _reckless_drivers(self) -> list[RecklessDriverResult]:
+        return [
+            RecklessDriverResult(
+                symbol=each.symbol,
+                car=each.car,
+                since=each.since / MILLISECOND,
+                until=None if each.until is None else each.until / MILLISECOND,
+                acts=each.n_acts,
+                last_act_at=each.last_act_at / MILLISECOND,
+            )
+            for each in self._reckless_cars.found
+        ]
 
     def _note(self, sample: Sample[tuple[Recognition, ...]]) -> None:
         self._recognitions.extend(sample.value)

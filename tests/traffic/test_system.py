@@ -89,7 +89,11 @@ def test_what_is_made_of_a_stream_is_found():
     [
         ("WorldObject", "", "a link process needs the setting 'remove_after'"),
         ("WorldObject", ", remove_after = 1 s, keep = 3", "a link process has no setting 'keep'"),
-        ("Made", ", remove_after = 1 s", "expected one of WorldObject, OnRoadObject, Car to be"),
+        (
+            "Made",
+            ", remove_after = 1 s",
+            "expected one of WorldObject, OnRoadObject, Car, RecklessDriver to be",
+        ),
     ],
 )
 def test_faulty_links_have_a_place(unit, settings, message):

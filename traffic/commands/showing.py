@@ -1,7 +1,7 @@
 """Tables and progress bars that the commands share."""
 
 import sys
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 
 from rich.box import SIMPLE_HEAD
@@ -11,7 +11,14 @@ from rich.progress import BarColumn, Progress, TextColumn, TimeRemainingColumn
 from rich.table import Table
 
 from traffic.maps import MapSummary
-from traffic.results import RecognitionResult, Replay, RunResult, Score, car_names
+from traffic.results import (
+    RecklessDriverResult,
+    RecognitionResult,
+    Replay,
+    RunResult,
+    Score,
+    car_names,
+)
 
 __all__ = ["progress", "show_network", "show_result", "show_scores"]
 
@@ -52,6 +59,8 @@ def show_result(result: RunResult) -> None:
     console.print(_recognitions(result))
     if result.missed:
         console.print(_missed(result))
+    if result.reckless_drivers:
+        console.print(_reckless_drivers(result.reckless_drivers))
     if result.score:
         console.print(_scores({"": result.score}))
     console.print(_timing(result))
@@ -134,6 +143,20 @@ def _missed(result: RunResult) -> Table:
             escape(manoeuvre.kind.replace("_", " ")),
             escape(", ".join(manoeuvre.vehicles)),
             escape(" → ".join(manoeuvre.place)),
+        )
+    return table
+
+
+def _reckless_drivers(drivers: Sequence[RecklessDriverResult]) -> Table:
+    columns = ("since s", "until s", "who", "reckless acts", "last at s")
+    table = Table(*columns, box=SIMPLE_HEAD, title="Reckless drivers")
+    for driver in drivers:
+        table.add_row(
+            f"{driver.since / 1000:.1f}",
+            "–" if driver.until is None else f"{driver.until / 1000:.1f}",
+            escape(driver.car),
+            str(driver.acts),
+            f"{driver.last_act_at / 1000:.1f}",
         )
     return table
 

@@ -3,5 +3,5 @@
 Read in this order: `carrying` (state that follows objects from frame to frame), `moving`,
 `stability`, `pairs`, `relations`, `headways` and `following` (who is next behind whom), `changes`
 (from columns to events), `link_turns` (what the map says, as events), `positions` (percepts
-without a camera).
+without a camera), `reckless` (who was a reckless driver, from when until when).
 """
