@@ -8,8 +8,10 @@ import numpy as np
 
 from traffic.scenarios.acts import Act
 from traffic.scenarios.acts.driving import Drive, Halt
+from traffic.scenarios.acts.following import CloseUp, Column, Tail, Tailgate
 from traffic.scenarios.acts.weaving import Swerve, Weave
 from traffic.sumo.acts.driving import drive, halt
+from traffic.sumo.acts.following import close_up, column, tail, tailgate
 from traffic.sumo.acts.performance import Performance, Script
 from traffic.sumo.acts.stage import Stage
 from traffic.sumo.acts.weaving import swerve, weave
@@ -35,4 +37,8 @@ _PERFORM: Mapping[type[Act], Perform] = {
     Halt: _script(halt),
     Weave: _script(weave),
     Swerve: _script(swerve),
+    Column: _script(column),
+    Tailgate: _script(tailgate),
+    CloseUp: _script(close_up),
+    Tail: _script(tail),
 }
