@@ -8,6 +8,7 @@ Modules, in reading order:
 - `scene`: what can be seen: the ground, what stands beside the roads, vehicles;
 - `shapes`: vehicles and houses as flat faces in space;
 - `painting`: the ground, painted once for each pose of the camera;
+- `lamps`: the lamps of traffic lights, drawn and read;
 - `rendering`: a scene as the colour camera and the thermal camera see it;
 - `blobs`: connected regions of an image that differ from the background;
 - `background`: what the empty road looks like, learned from pixels;

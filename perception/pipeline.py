@@ -23,6 +23,7 @@ from perception.camera import Camera, Points
 from perception.columns import concatenate, select
 from perception.fusion import fuse
 from perception.joining import Outline, Outlines, join
+from perception.lamps import Lamps, mask_of, without_lamps
 from perception.locating import Sightings, locate, no_sightings
 from perception.painting import FloatImage, Image, fill_areas, temperature_from_level
 from perception.scene import polygons_of
@@ -114,9 +115,15 @@ class Percepts:
 class Pipeline:
     """Sees vehicles on roads through a colour and a thermal camera that share one pose."""
 
-    def __init__(self, roads: Sequence[Points], settings: PipelineSettings | None = None) -> None:
-        """Look for vehicles on *roads*, outlines of shape (k, 2) on the ground."""
+    def __init__(
+        self,
+        roads: Sequence[Points],
+        settings: PipelineSettings | None = None,
+        lamps: Lamps | None = None,
+    ) -> None:
+        """Look for vehicles on *roads*, outlines of shape (k, 2) on the ground, past *lamps*."""
         self._roads = roads
+        self._lamps = lamps
         self._settings = settings or PipelineSettings()
         self._tracker = Tracker(self._settings.tracking)
         self._stains = Stains()
@@ -130,6 +137,8 @@ class Pipeline:
         Another pose of the camera begins the learning of the background anew.
         """
         view = self._view_of(camera)
+        if colour is not None and self._lamps is not None and len(self._lamps):
+            colour = self._without_lamps(colour, self._lamps, view)
         self._begin(view, colour, thermal)
         by_colour = self._colour.look(colour, view)
         by_warmth = self._thermal.look(thermal, view)
@@ -159,9 +168,17 @@ class Pipeline:
         """Return the map as *camera* sees it; a new pose needs new eyes."""
         if self._view is None or self._view.camera != camera:
             self._view = View.of(self._roads, camera, self._settings)
+            self._lamp_mask: Image | None = None
             self._colour = Eye(self._settings, self._settings.colour)
             self._thermal = Eye(self._settings, self._settings.thermal)
         return self._view
+
+    def _without_lamps(self, colour: Image, lamps: Lamps, view: "View") -> Image:
+        """Return the image with lamps as plain as the road was in the first one."""
+        if self._lamp_mask is None:
+            self._lamp_mask = mask_of(lamps, view.camera)
+            self._plain = np.median(colour[view.road != 0], axis=0).tolist()
+        return without_lamps(colour, self._lamp_mask, self._plain)
 
     def _begin(self, view: "View", colour: Image | None, thermal: Image | None) -> None:
         """Begin to learn with the first image of each camera.

@@ -1,21 +1,22 @@
 """Cameras and perception as knowledge processes; the only module here that knows samples."""
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from typing import Any
 
 import numpy as np
 
 from dyknow.streams.process import Reactive
 from dyknow.streams.sample import NO_VALUE, Sample
-from dyknow.streams.table import Table
+from dyknow.streams.table import Column, Table
 from dyknow.time import TimePoint
 from perception.camera import Camera, Points
+from perception.lamps import LampReader, Lamps
 from perception.painting import GroundPainter, Image, make_texture
 from perception.pipeline import Percepts, Pipeline, PipelineSettings
 from perception.rendering import ColourRenderer, ThermalRenderer
 from perception.scene import Ground, Surroundings, Vehicles
 
-__all__ = ["ColourCamera", "ThermalCamera", "VisionPercepts", "make_painter"]
+__all__ = ["ColourCamera", "SignalLamps", "ThermalCamera", "VisionPercepts", "make_painter"]
 
 
 def make_painter(
@@ -28,35 +29,90 @@ def make_painter(
 class _CameraUnit(Reactive):
     """Turns each sample of vehicles into an image with the same valid time."""
 
-    def __init__(self, renderer: ColourRenderer | ThermalRenderer) -> None:
-        self._renderer = renderer
+    def __init__(self, take: Callable[[Vehicles, Camera, tuple[Sample[Any], ...]], Image]) -> None:
+        self._take = take
         self._last = TimePoint(-1)
 
     def push(self, now: TimePoint, inputs: tuple[Sample[Any], ...]) -> Iterable[Sample[Image]]:
         """Emit one image for each new sample of vehicles, once a pose of the camera is known."""
-        vehicles, pose = inputs
+        vehicles, pose = inputs[:2]
         if vehicles.value is NO_VALUE or pose.value is NO_VALUE:
             return ()
         if vehicles.valid_time <= self._last:
             return ()
         self._last = vehicles.valid_time
-        camera: Camera = pose.value
-        image = self._renderer.render(vehicles_from_table(vehicles.value), camera)
+        image = self._image(vehicles_from_table(vehicles.value), pose.value, inputs[2:])
         return (Sample(image, vehicles.valid_time, now),)
+
+    def _image(self, vehicles: Vehicles, camera: Camera, others: tuple[Sample[Any], ...]) -> Image:
+        raise NotImplementedError
 
 
 class ColourCamera(_CameraUnit):
-    """The unit `ColourCamera(vehicles, camera_pose)`: images (h, w, 3), blue, green, red."""
+    """The unit `ColourCamera(vehicles, camera_pose, signals)`: images (h, w, 3).
 
-    def __init__(self, *, painter: GroundPainter, generator: np.random.Generator) -> None:
-        super().__init__(ColourRenderer(painter, generator))
+    The channels are blue, green, red. The third input may be left out; then no lamp is lit.
+    """
+
+    def __init__(
+        self,
+        *,
+        painter: GroundPainter,
+        generator: np.random.Generator,
+        lamps: Lamps | None = None,
+    ) -> None:
+        super().__init__(self._image)
+        self._n_lamps = 0 if lamps is None else len(lamps)
+        self._renderer = ColourRenderer(painter, generator, lamps=lamps)
+
+    def _image(self, vehicles: Vehicles, camera: Camera, others: tuple[Sample[Any], ...]) -> Image:
+        lights = np.zeros(self._n_lamps, dtype=np.int8)
+        for signals in others:
+            if signals.value is not NO_VALUE:
+                lights[signals.value.ids] = signals.value["state"]
+        return self._renderer.render(vehicles, camera, lights)
 
 
 class ThermalCamera(_CameraUnit):
     """The unit `ThermalCamera(vehicles, camera_pose)`: images (h, w), brighter where warmer."""
 
     def __init__(self, *, painter: GroundPainter, generator: np.random.Generator) -> None:
-        super().__init__(ThermalRenderer(painter, generator))
+        super().__init__(self._image)
+        self._renderer = ThermalRenderer(painter, generator)
+
+    def _image(self, vehicles: Vehicles, camera: Camera, others: tuple[Sample[Any], ...]) -> Image:
+        del others
+        return self._renderer.render(vehicles, camera)
+
+
+class SignalLamps(Reactive):
+    """The unit `SignalLamps(images, camera_pose)`: what signals show, of sort `signal`.
+
+    A table comes out for each colour image, with the signals whose lamps have been seen so far.
+    Columns: `state`, int8, what a lamp shows (`perception.lamps.Light`), or showed when it was
+    seen last; `since`, int64, when it was first seen to do so; `observed`, whether it is seen now.
+    """
+
+    def __init__(self, *, lamps: Lamps) -> None:
+        self._reader = LampReader(lamps)
+        self._last = TimePoint(-1)
+
+    def push(self, now: TimePoint, inputs: tuple[Sample[Any], ...]) -> Iterable[Sample[Table]]:
+        """Emit what is known of the signals with a new image."""
+        images, pose = inputs
+        if images.value is NO_VALUE or pose.value is NO_VALUE:
+            return ()
+        if images.valid_time <= self._last:
+            return ()
+        self._last = images.valid_time
+        lights = self._reader.read(images.valid_time, images.value, pose.value)
+        columns: dict[str, Column] = {
+            "state": lights.light,
+            "since": lights.since,
+            "observed": lights.is_seen,
+        }
+        table = Table("signal", lights.rows.astype(np.int64), columns)
+        return (Sample(table, images.valid_time, now),)
 
 
 class VisionPercepts(Reactive):
@@ -68,9 +124,13 @@ class VisionPercepts(Reactive):
     """
 
     def __init__(
-        self, *, roads: Sequence[Points], settings: PipelineSettings | None = None
+        self,
+        *,
+        roads: Sequence[Points],
+        settings: PipelineSettings | None = None,
+        lamps: Lamps | None = None,
     ) -> None:
-        self._pipeline = Pipeline(roads, settings)
+        self._pipeline = Pipeline(roads, settings, lamps)
         self._last = TimePoint(-1)
 
     def push(self, now: TimePoint, inputs: tuple[Sample[Any], ...]) -> Iterable[Sample[Table]]:

@@ -11,6 +11,7 @@ import numpy as np
 import numpy.typing as npt
 
 from perception.camera import Camera, Points
+from perception.lamps import Lamps
 from perception.painting import (
     ASPHALT_TEMPERATURE,
     GroundPainter,
@@ -71,20 +72,30 @@ class ColourRenderer:
         generator: np.random.Generator,
         *,
         noise: float = _COLOUR_NOISE,
+        lamps: Lamps | None = None,
     ) -> None:
+        self._lamps = lamps
         self._painter = painter
         self._generator = generator
         self._deviation = noise
         self._camera: Camera | None = None
 
-    def render(self, vehicles: Vehicles, camera: Camera) -> Image:
-        """Return the image of *vehicles* on the ground."""
+    def render(
+        self,
+        vehicles: Vehicles,
+        camera: Camera,
+        lights: npt.NDArray[np.integer] | None = None,
+    ) -> Image:
+        """Return the image of *vehicles* on the ground, lamps lit as *lights* say."""
         if camera != self._camera:
             self._turn_to(camera)
         image = self._ground.copy()
         seen = _in_view(vehicles, camera)
         if len(seen):
             self._draw_shadows(image, seen, camera)
+        if self._lamps is not None and lights is not None:
+            self._lamps.draw(image, lights, camera, self._noise.headroom)
+        if len(seen):
             faces = faces_of_vehicles(seen, camera)
             quads, rows = visible_quads(faces, camera, inset_px=_EDGE_INSET_PX)
             paint = seen.colour[faces.owner[rows], ::-1].astype(np.float64)

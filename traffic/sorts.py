@@ -93,6 +93,7 @@ SORTS: Mapping[str, Callable[[Any], str | None]] = {
     "vehicles": _Tables(
         {"position": _POINT, "heading": _NUMBER, "speed": _NUMBER, "length": _NUMBER}
     ),
+    "signals": _Tables({"state": _COUNT, "since": _COUNT, "observed": _TRUTH}),
     "camera_pose": _fault_of_camera,
     "colour_image": partial(_fault_of_image, 3),
     "thermal_image": partial(_fault_of_image, 1),

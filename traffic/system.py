@@ -49,9 +49,17 @@ from dyknow.streams.sample import Sample
 from dyknow.time import Duration, TimePoint
 from networks.markings import MarkingKind
 from networks.roads import RoadMap
+from networks.signals import SignalState
 from perception.camera import Camera
+from perception.lamps import Lamps
 from perception.painting import GroundPainter
-from perception.processes import ColourCamera, ThermalCamera, VisionPercepts, make_painter
+from perception.processes import (
+    ColourCamera,
+    SignalLamps,
+    ThermalCamera,
+    VisionPercepts,
+    make_painter,
+)
 from perception.scene import Ground, build_surroundings
 from traffic.bundled import data_folder
 from traffic.errors import RequestError
@@ -377,6 +385,7 @@ def _features_in(node: Any) -> frozenset[str]:
 def _sources(world: World) -> dict[str, Any]:
     return {
         "vehicles": lambda: world.vehicles,
+        "signals": lambda: world.signals,
         "camera_pose": lambda: _camera_pose(world.camera),
         "link_turns": lambda: LinkTurns(world.road_map),
     }
@@ -384,17 +393,26 @@ def _sources(world: World) -> dict[str, Any]:
 
 def vocabularies_of(road_map: RoadMap) -> dict[str, Sequence[str]]:
     """Return the names that the numbers in a column stand for, by the name of the column."""
-    return {"link": road_map.links, "crossing": road_map.crossings}
+    return {
+        "link": road_map.links,
+        "crossing": road_map.crossings,
+        "signal": road_map.signals.names,
+        "state": tuple(state.name.lower() for state in SignalState),
+    }
 
 
 def _units(world: World, made: Made) -> dict[str, Any]:
     country, colour, thermal, positions = world.generator.spawn(4)
     painter = cache(lambda: _painter(world.road_map, country))
     vocabularies = vocabularies_of(world.road_map)
+    lamps = Lamps(world.road_map.signals.lines)
     return {
-        "ColourCamera": lambda: ColourCamera(painter=painter(), generator=colour),
+        "ColourCamera": lambda: ColourCamera(painter=painter(), generator=colour, lamps=lamps),
         "ThermalCamera": lambda: ThermalCamera(painter=painter(), generator=thermal),
-        "VisionPercepts": lambda: VisionPercepts(roads=world.road_map.road_polygons()),
+        "SignalLamps": lambda: SignalLamps(lamps=lamps),
+        "VisionPercepts": lambda: VisionPercepts(
+            roads=world.road_map.road_polygons(), lamps=lamps
+        ),
         "NoisyPositions": partial(NoisyPositions, positions),
         "Moving": Moving,
         "StableFor": StableFor,
