@@ -21,6 +21,7 @@ from traffic.commands import (
     network,
     recognise,
     recover,
+    regress,
     replay,
     report,
     run,
@@ -43,6 +44,7 @@ app.command("recover")(recover.recover)
 app.command("report")(report.report)
 app.command("compare")(compare.compare)
 app.command("experiment")(experiment.experiment)
+app.command("regress")(regress.regress)
 app.command("inspect")(inspect.inspect)
 app.command("judge")(judge.judge)
 app.command("monitor")(monitor.monitor)

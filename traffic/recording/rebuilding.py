@@ -42,6 +42,7 @@ __all__ = [
     "describe",
     "open_run",
     "recorded_labels",
+    "recorded_sources",
     "simulation_of",
     "system_of",
     "take",
@@ -178,6 +179,22 @@ def recorded_labels(recording: Recording) -> tuple[str, ...]:
         for topic, stream in recording.streams.items()
         if stream.role is ChannelRole.GENERATOR and topic != TRUTH
     )
+
+
+def recorded_sources(
+    recording: Recording, specification: Specification
+) -> dict[str, Callable[[], Source]]:
+    """Return what makes each recorded source again, by the label under which it was recorded.
+
+    Those that say only what the world does are left out: they can be made again without.
+    """
+    known = recorded_labels(recording)
+    topics = (
+        next((each for each in _topics_of(name, specification) if each in known), None)
+        for name in Declarations(specification).sources
+        if name not in _OF_THE_WORLD
+    )
+    return {topic: partial(recording.source, topic) for topic in topics if topic is not None}
 
 
 def _recorded_sources(
