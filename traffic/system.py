@@ -72,6 +72,7 @@ from traffic.features.pairs import NearPairs
 from traffic.features.positions import NoisyPositions
 from traffic.features.relations import CarRelations
 from traffic.features.stability import StableFor
+from traffic.features.swaying import SWINGS, Swaying
 from traffic.world import World
 
 __all__ = [
@@ -398,6 +399,7 @@ def vocabularies_of(road_map: RoadMap) -> dict[str, Sequence[str]]:
         "crossing": road_map.crossings,
         "signal": road_map.signals.names,
         "state": tuple(state.name.lower() for state in SignalState),
+        "swing": SWINGS,
     }
 
 
@@ -420,6 +422,7 @@ def _units(world: World, made: Made) -> dict[str, Any]:
         "CarRelations": CarRelations,
         "Headways": partial(Headways, world.road_map),
         "Following": Following,
+        "Swaying": Swaying,
         "Changes": partial(Changes, vocabularies),
         "Chronicles": _Chronicles(made).recogniser,
         "RecognitionEvents": RecognitionEvents,

@@ -1,7 +1,7 @@
 """Computational units of the traffic domain: what cars do, and where they are to each other.
 
 Read in this order: `carrying` (state that follows objects from frame to frame), `moving`,
-`stability`, `pairs`, `relations`, `headways` and `following` (who is next behind whom), `changes`
-(from columns to events), `link_turns` (what the map says, as events), `positions` (percepts
-without a camera), `reckless` (who was a reckless driver, from when until when).
+`stability`, `pairs`, `relations`, `headways` and `following` (who is next behind whom), `swaying`,
+`changes` (from columns to events), `link_turns` (what the map says, as events), `positions`
+(percepts without a camera), `reckless` (who was a reckless driver, from when until when).
 """

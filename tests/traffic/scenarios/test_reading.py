@@ -44,10 +44,10 @@ def faults(text: str, folder: Path) -> list[str]:
 
 
 def test_the_bundled_scenarios_can_be_read() -> None:
-    """There are a crossing and a country road, each with a camera and a sentence about it."""
+    """A crossing, a country road and others, each with a camera and a sentence about it."""
     scenarios = bundled_scenarios()
 
-    assert [scenario.name for scenario in scenarios] == ["crossing", "rural"]
+    assert {"crossing", "rural"} <= {scenario.name for scenario in scenarios}
     assert all(scenario.description and scenario.camera for scenario in scenarios)
 
 
