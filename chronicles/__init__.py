@@ -19,6 +19,8 @@ Read in this order:
 - `recognition`: the recogniser; `ordering`: samples in the order of their valid times;
   `processes`: the recogniser on streams; `recognised`: what it recognises as events for others;
   `marking`: the objects that it was about
+- `attributes`: which streams the attributes of chronicles stand for; `observing`: changes of
+  their values as events; `reasoning`: chronicles over the streams of a network
 - `errors`
 """
 

@@ -16,6 +16,7 @@ __all__ = [
     "RecursionInChroniclesError",
     "UnboundInstantError",
     "UnboundVariableError",
+    "UngroundedAttributeError",
     "ValueOutsideDomainError",
 ]
 
@@ -58,6 +59,18 @@ class UnboundVariableError(ChronicleError):
     def __init__(self, variable: str, span: Span, nearest: str | None = None) -> None:
         hint = f"; did you mean '{nearest}'?" if nearest else ""
         super().__init__(f"variable '{variable}' is bound by no event{hint}", span)
+
+
+class UngroundedAttributeError(ChronicleError):
+    """No stream gives the values of an attribute."""
+
+    def __init__(self, attribute: str, expected: str, nearest: Sequence[str], span: Span) -> None:
+        close = ", ".join(f"'{label}'" for label in nearest)
+        hint = f"; nearest are {close}" if len(nearest) > 1 else f"; nearest is {close}"
+        message = f"no stream for the attribute '{attribute}': expected {expected}"
+        super().__init__(message + (hint if nearest else ""), span)
+        self.attribute = attribute
+        self.nearest = tuple(nearest)
 
 
 class ValueOutsideDomainError(ChronicleError):

@@ -69,7 +69,7 @@ class RecognitionMarks:
         self._chronicles = frozenset(chronicles.split())
         self._max_delay = max_delay
         self._remember = remember
-        self._order = InputOrder(max_delay)
+        self._order = InputOrder(max_delay, with_equals=True)
         self._is_open = False
         self._last: Table | None = None
         self._last_time = TimePoint(-1)

@@ -34,9 +34,12 @@ class _Input:
             return self.complete
         return max(self.complete, TimePoint(now - self.max_delay))
 
-    def complete_when(self, time: TimePoint) -> TimePoint | None:
-        """Return from when on nothing is missing up to *time*, if that is known."""
-        if self.complete >= time:
+    def complete_when(self, time: TimePoint, ahead: int = 0) -> TimePoint | None:
+        """Return from when on nothing is missing up to *time*, if that is known.
+
+        What order and heartbeats tell may be *ahead* of that by some nanoseconds.
+        """
+        if self.complete + ahead >= time:
             return BEGINNING_OF_TIME
         return None if self.max_delay is None else TimePoint(time + self.max_delay)
 
@@ -52,10 +55,13 @@ class InputOrder:
 
     Args:
         max_delay: The largest delay of the samples of every stream, if there is one.
+        with_equals: Whether a sample is also held back until no more of the same valid time can
+            come, so that they are ready together.
     """
 
-    def __init__(self, max_delay: Duration | None = None) -> None:
+    def __init__(self, max_delay: Duration | None = None, *, with_equals: bool = False) -> None:
         self._max_delay = max_delay
+        self._ahead = 0 if with_equals else 1
         self._inputs: dict[int, _Input] = {}
         self._is_known = False
         self._waiting: list[tuple[TimePoint, int, int, Sample[Any]]] = []
@@ -109,8 +115,10 @@ class InputOrder:
 
     def ready(self, now: TimePoint) -> Iterator[tuple[int, Sample[Any]]]:
         """Yield the samples that nothing earlier can precede, with the number of their stream."""
-        awaited = [one.complete_at(now) for one in self._inputs.values() if one.is_awaited]
-        while self._waiting and all(self._waiting[0][0] <= complete for complete in awaited):
+        while self._waiting:
+            when = self.ready_when()
+            if when is None or when > now:
+                return
             _, _, at, sample = heappop(self._waiting)
             yield at, sample
 
@@ -125,7 +133,7 @@ class InputOrder:
         if not self._waiting:
             return None
         awaited = [one for one in self._inputs.values() if one.is_awaited]
-        return _latest(one.complete_when(self._waiting[0][0]) for one in awaited)
+        return _latest(one.complete_when(self._waiting[0][0], self._ahead) for one in awaited)
 
     def complete_when(self, time: TimePoint) -> TimePoint | None:
         """Return from when on all streams are complete up to *time*, if time alone can tell."""

@@ -17,6 +17,7 @@ __all__ = ["ChronicleRecogniser"]
 
 _logger = logging.getLogger(__name__)
 
+_Events = tuple[Event, ...]
 _Recognitions = tuple[Recognition, ...]
 
 
@@ -65,6 +66,10 @@ class ChronicleRecogniser:
         """The recogniser, to ask for partial instances."""
         return self._recogniser
 
+    def begin(self, at: int, sample: Sample[_Events]) -> None:
+        """Take in what held before the process was there, as a sample of input number *at*."""
+        self.order.put(at, sample)
+
     def push(self, now: TimePoint, inputs: tuple[Sample[Any], ...]) -> list[Element]:
         """Take in the new samples among *inputs* and emit what is recognised."""
         self.order.take(now, inputs)
@@ -95,7 +100,7 @@ class ChronicleRecogniser:
         ]
         return min((time for time in times if time is not None), default=None)
 
-    def _take_in(self, valid_time: TimePoint, events: tuple[Event, ...]) -> list[Recognition]:
+    def _take_in(self, valid_time: TimePoint, events: _Events) -> list[Recognition]:
         n_late = self._recogniser.n_late
         found = self._recogniser.push(valid_time, events)
         if self._recogniser.n_late > n_late:

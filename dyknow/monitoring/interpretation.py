@@ -20,7 +20,15 @@ from dyknow.mtl.syntax import Feature
 from dyknow.streams.selecting import FieldPath
 from dyknow.time import TimePoint
 
-__all__ = ["Constant", "Fluent", "Interpretation", "Origin", "origins_of"]
+__all__ = [
+    "Constant",
+    "Fluent",
+    "Interpretation",
+    "Origin",
+    "check_targets",
+    "label_and_field",
+    "origins_of",
+]
 
 Constant = bool | float | str
 
@@ -62,12 +70,7 @@ class Interpretation:
     known: Mapping[str, Fluent] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
-        for feature, target in self.features.items():
-            if _TARGET.fullmatch(target) is None:
-                raise ValueError(
-                    f"expected a label such as 'speed[uav1]', or a field such as 'cars.speed', "
-                    f"for the feature '{feature}', found '{target}'"
-                )
+        check_targets(self.features)
         for domain, objects in self.domains.items():
             if isinstance(objects, str) or not all(isinstance(each, str) for each in objects):
                 raise ValueError(f"expected names of objects for '{domain}', found {objects!r}")
@@ -159,10 +162,24 @@ def _target(feature: Feature, interpretation: Interpretation) -> tuple[Label, Fi
     objects = _objects(feature)
     for key in _ways_to_write(feature):
         if key in interpretation.features:
-            return _label_and_field(interpretation.features[key], ())
+            return label_and_field(interpretation.features[key], ())
     if objects is None:
         return None
-    return _label_and_field(interpretation.features.get(feature.name, feature.name), objects)
+    return label_and_field(interpretation.features.get(feature.name, feature.name), objects)
+
+
+def check_targets(features: Mapping[str, str]) -> None:
+    """Raise an error if what a feature is to stand for is no label and no field.
+
+    Raises:
+        ValueError: It is none.
+    """
+    for feature, target in features.items():
+        if _TARGET.fullmatch(target) is None:
+            raise ValueError(
+                f"expected a label such as 'speed[uav1]', or a field such as 'cars.speed', "
+                f"for the feature '{feature}', found '{target}'"
+            )
 
 
 def _ways_to_write(feature: Feature) -> Iterator[str]:
@@ -191,7 +208,8 @@ def _name(argument: syntax.Argument) -> str:
             return ""
 
 
-def _label_and_field(target: str, objects: tuple[str, ...]) -> tuple[Label, FieldPath] | None:
+def label_and_field(target: str, objects: tuple[str, ...]) -> tuple[Label, FieldPath] | None:
+    """Return the label and the field that *target* means; it has *objects* if none are written."""
     match = _TARGET.fullmatch(target)
     if match is None:
         return None
