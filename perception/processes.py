@@ -72,6 +72,14 @@ class ColourCamera(_CameraUnit):
                 lights[signals.value.ids] = signals.value["state"]
         return self._renderer.render(vehicles, camera, lights)
 
+    def skip(self, time: TimePoint, camera: Camera) -> None:
+        """Pass over the image of *time*, at a small part of the cost of taking it.
+
+        All later images are what they are if this one is taken.
+        """
+        self._last = time
+        self._renderer.skip(camera)
+
 
 class ThermalCamera(_CameraUnit):
     """The unit `ThermalCamera(vehicles, camera_pose)`: images (h, w), brighter where warmer."""
@@ -83,6 +91,14 @@ class ThermalCamera(_CameraUnit):
     def _image(self, vehicles: Vehicles, camera: Camera, others: tuple[Sample[Any], ...]) -> Image:
         del others
         return self._renderer.render(vehicles, camera)
+
+    def skip(self, time: TimePoint, camera: Camera) -> None:
+        """Pass over the image of *time*, at a small part of the cost of taking it.
+
+        All later images are what they are if this one is taken.
+        """
+        self._last = time
+        self._renderer.skip(camera)
 
 
 class SignalLamps(Reactive):

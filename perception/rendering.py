@@ -58,9 +58,17 @@ class SensorNoise:
 
     def add_to(self, image: Image) -> None:
         """Add noise to *image* in place."""
-        row, column = self._generator.integers(_TILE_SLACK, size=2)
+        row, column = self._offset()
         height, width = image.shape[:2]
         cv2.add(image, self._tile[row : row + height, column : column + width], dst=image)
+
+    def skip(self) -> None:
+        """Let the next image have the noise that it would have after one more."""
+        self._offset()
+
+    def _offset(self) -> tuple[int, int]:
+        row, column = self._generator.integers(_TILE_SLACK, size=2)
+        return int(row), int(column)
 
 
 class ColourRenderer:
@@ -106,6 +114,12 @@ class ColourRenderer:
             fill_quads(image, quads, np.clip(colours, 0.0, 255.0))
         self._noise.add_to(image)
         return image
+
+    def skip(self, camera: Camera) -> None:
+        """Pass over an image: the next one is what it would be if this one had been rendered."""
+        if camera != self._camera:
+            self._turn_to(camera)
+        self._noise.skip()
 
     def _turn_to(self, camera: Camera) -> None:
         """Paint the ground for another pose, in the sun, in half shadow, and in shadow."""
@@ -170,6 +184,12 @@ class ThermalRenderer:
             fill_quads(image, quads, np.maximum(levels - self._noise.headroom, 0.0)[:, None])
         self._noise.add_to(image)
         return image
+
+    def skip(self, camera: Camera) -> None:
+        """Pass over an image: the next one is what it would be if this one had been rendered."""
+        if camera != self._camera:
+            self._turn_to(camera)
+        self._noise.skip()
 
     def _turn_to(self, camera: Camera) -> None:
         """Paint the ground for another pose."""

@@ -15,6 +15,7 @@ from traffic.commands import (
     chronicles,
     compare,
     experiment,
+    explain,
     inspect,
     judge,
     monitor,
@@ -45,6 +46,7 @@ app.command("report")(report.report)
 app.command("compare")(compare.compare)
 app.command("experiment")(experiment.experiment)
 app.command("regress")(regress.regress)
+app.command("explain")(explain.explain)
 app.command("inspect")(inspect.inspect)
 app.command("judge")(judge.judge)
 app.command("monitor")(monitor.monitor)

@@ -5,6 +5,7 @@ from pathlib import Path
 
 __all__ = [
     "ExperimentError",
+    "ExplanationError",
     "LineError",
     "NetworkBuildError",
     "RecordingError",
@@ -82,6 +83,10 @@ class ReplayError(TrafficError):
 
 class ResultError(TrafficError):
     """A folder of results cannot be written or read."""
+
+
+class ExplanationError(TrafficError):
+    """What was recognised cannot be explained."""
 
 
 class LineError(TrafficError):

@@ -2,6 +2,7 @@
 
 import tempfile
 from collections.abc import Iterator
+from contextlib import AbstractContextManager
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -10,6 +11,7 @@ from dyknow.recordings.comparing import Difference, compare
 from dyknow.recordings.recording import Recording
 from dyknow.recordings.violations import VIOLATIONS
 from dyknow.time import MILLISECOND, Duration, TimePoint, text_from_duration
+from traffic.explaining.keeping import explanations_kept
 from traffic.origin import write_origin
 from traffic.recording.changes import changes_since, detail_of
 from traffic.recording.describing import RunDescription
@@ -94,7 +96,8 @@ def replay(request: ReplayRequest, on_progress: OnProgress) -> RunResult:
             return _Replay(request, recording).complete(on_progress)
         with run_folder(request.out) as folder:
             replayed = _Replay(request, recording)
-            result = replayed.complete(on_progress)
+            with replayed.explained(folder):
+                result = replayed.complete(on_progress)
             replayed.write(result, folder)
         return result
 
@@ -135,6 +138,10 @@ class _Replay:
             with open_run(wanted.path) as computed:
                 said = self._compare(computed)
         return result.model_copy(update={"replay": said})
+
+    def explained(self, folder: Path) -> AbstractContextManager[None]:
+        """Keep what explains the recognitions in *folder* while the block lasts."""
+        return explanations_kept(self._system, self._world.road_map, folder)
 
     def write(self, result: RunResult, folder: Path) -> None:
         """Write the result, its origin, and the network into *folder*."""

@@ -17,6 +17,7 @@ from dyknow.time import MILLISECOND, SECOND
 from networks.reading import read_road_map
 from perception.camera import Camera
 from traffic.errors import RequestError
+from traffic.explaining.keeping import explanations_kept
 from traffic.origin import origin_of, write_origin
 from traffic.overlaying import Overlay
 from traffic.recording.describing import RunDescription
@@ -75,6 +76,7 @@ def run_scenario(request: RunRequest, on_progress: OnProgress) -> tuple[RunResul
         with (
             _film(request, camera, watch),
             _recording(request, description, system, world, simulation) as keep,
+            explanations_kept(system, road_map, folder),
         ):
             if keep is not None:
                 feed.observers.append(keep.observe)

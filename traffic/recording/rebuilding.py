@@ -40,6 +40,7 @@ from traffic.world import World, camera_of, generators_of
 
 __all__ = [
     "describe",
+    "network_of_origin",
     "open_run",
     "recorded_labels",
     "recorded_sources",
@@ -81,7 +82,7 @@ def world_of(recording: Recording) -> World:
         NetworkError: The network cannot be read.
     """
     origin = describe(recording).origin
-    road_map = read_road_map(_network_of(origin, recording.path))
+    road_map = read_road_map(network_of_origin(origin, recording.path))
     is_vision = origin.request["view"] == View.VISION
     camera = camera_of(origin.scenario.camera, road_map) if is_vision else None
     _, sensors = generators_of(int(origin.request["seed"] or 0))
@@ -236,8 +237,16 @@ def _listed(labels: Sequence[str]) -> str:
     return ", ".join(labels) or "nothing"
 
 
-def _network_of(origin: Origin, path: Path) -> Path:
-    """Return the path of the network: where it was, or among the bundled ones."""
+def network_of_origin(origin: Origin, path: Path) -> Path:
+    """Return the path of the network: where it was, or among the bundled ones.
+
+    Args:
+        origin: What a run was made from.
+        path: Of the run or its recording, for messages.
+
+    Raises:
+        ReplayError: The network is not what it was, or nowhere to be found.
+    """
     name = origin.network.name
     bundled = data_folder() / "networks" / name.removesuffix(".net.xml") / name
     there = [each for each in (origin.network, bundled) if each.is_file()]
