@@ -39,8 +39,8 @@ def test_events_without_a_limit_are_told(constraints: str, awaited: list[str]) -
         ("event(a[?x]:(?, true), t0) occurs(0, 1, a[?x]:(true, ?), (t0 + 1, t1))", ["b"]),
         ("event(a[?x]:(?, true), t0) noevent(d[?x]:(true, ?), (t0 + 1, t1))", ["b"]),
         ("event(a[?x]:(?, true), t0) noevent(a[?y]:(true, ?), (t0 + 1, t1))", ["b"]),
-        ("event(a[?x]:(?, true), t0) event(d[?x], t) noevent(a[?x]:(true, ?), (t0 + 1, t1))"
-         " t0 < t", ["d", "b"]),
+        (("event(a[?x]:(?, true), t0) event(d[?x], t) noevent(a[?x]:(true, ?), (t0 + 1, t1))"
+         " t0 < t"), ["d", "b"]),
     ],
 )  # fmt: skip
 def test_what_holds_as_long_as_nothing_changes_is_bounded(

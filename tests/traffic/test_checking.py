@@ -106,6 +106,8 @@ def test_chronicles_are_warned_of(tmp_path):
     assert [text.split("\n")[0] for text in warnings_of_file(path)] == [
         f"{path}:2:1: warning: 'D' is not used",
         f"{path}:3:1: warning: 'm' is not used",
-        f"{path}:6:5: warning: chronicle 'c' may await this event without end: nothing limits how"
-        " long after 't1' 't2' can be",
+        (
+            f"{path}:6:5: warning: chronicle 'c' may await this event without end: nothing limits how"
+            " long after 't1' 't2' can be"
+        ),
     ]

@@ -16,7 +16,8 @@ def recognise(
     chronicles: Annotated[
         list[str],
         typer.Argument(
-            help="Files (.chronicle), or families of the library (see 'traffic chronicles')."
+            metavar="CHRONICLES",
+            help="Files (.chronicle), or families of the library (see 'traffic chronicles').",
         ),
     ],
     *,

@@ -17,6 +17,8 @@ from traffic.recognising.screening import OnRemark, RemarkKind, Screening
 
 __all__ = ["OnRecognition", "Outcome", "Settings", "delay_from", "recognise"]
 
+_NO_DELAY = Duration(0)
+
 OnRecognition = Callable[[Recognition], None]
 
 
@@ -30,7 +32,7 @@ class Settings:
         limit: How many partial instances of one chronicle are kept; None for any number.
     """
 
-    max_delay: Duration
+    max_delay: Duration = _NO_DELAY
     closes: bool = False
     limit: int | None = None
 

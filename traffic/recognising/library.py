@@ -134,7 +134,7 @@ def path_of(name: str) -> Path:
         return paths[name]
     if _is_path(name):
         return Path(name)
-    what = f"a file or one of {', '.join(paths)}"
+    what = "a file or the name of a family of the library"
     raise _unknown("CHRONICLES", what, name, nearest_name(name, paths))
 
 
