@@ -10,6 +10,8 @@ A benchmark measures and never judges. Read in this order:
   same work done by other libraries, if they are installed
 - `sequences`: the formulas and states of `progression`, a benchmark; `monitor_peers`: other
   libraries for monitoring
+- `chronicles_events`: the overtake pattern, and what is to be found; `chronicles`, a benchmark;
+  `chronicles_peers`: other engines
 - `registry`: all benchmarks by name; to add one, write a module and name it there
 - `pictures`: results as pictures
 """

@@ -4,7 +4,15 @@ import time
 from pathlib import Path
 
 from dyknow.time import Duration, duration_from_text
-from traffic.benchmarks import memory, progression, recordings, streams, synchronisation, tables
+from traffic.benchmarks import (
+    chronicles,
+    memory,
+    progression,
+    recordings,
+    streams,
+    synchronisation,
+    tables,
+)
 from traffic.benchmarks.machine import this_machine
 from traffic.benchmarks.measuring import Benchmark, OnProgress, Plan
 from traffic.benchmarks.pictures import write_pictures
@@ -19,6 +27,7 @@ BENCHMARKS: dict[str, Benchmark] = {
     "tables": tables.BENCHMARK,
     "synchronisation": synchronisation.BENCHMARK,
     "progression": progression.BENCHMARK,
+    "chronicles": chronicles.BENCHMARK,
     "recordings": recordings.BENCHMARK,
     "memory": memory.BENCHMARK,
 }

@@ -13,7 +13,7 @@ def benchmark(
     name: Annotated[
         str,
         typer.Argument(
-            help="streams, tables, synchronisation, progression, recordings or memory."
+            help="streams, tables, synchronisation, progression, chronicles, recordings or memory."
         ),
     ],
     *,
