@@ -213,7 +213,7 @@ def test_a_bug_is_no_message(traffic, monkeypatch):
     def fail(*_: object) -> None:
         raise KeyError("a bug")
 
-    monkeypatch.setattr("traffic.results.read_result", fail)
+    monkeypatch.setattr("traffic.reporting.reports.read_result", fail)
     monkeypatch.setattr(sys, "argv", ["traffic", "report", "x"])
 
     with pytest.raises(KeyError):

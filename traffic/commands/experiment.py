@@ -40,11 +40,11 @@ def experiment(
     """Do all runs of a design, on processes of this machine or on a cluster, and measure them."""
     from traffic.commands.showing_experiments import (
         experiment_progress,
-        json_from_experiment,
         show_designs,
         show_estimate,
         show_experiment,
     )
+    from traffic.experiments.documents import json_from_experiment
     from traffic.experiments.request import ExperimentRequest
     from traffic.experiments.running import estimate_experiment, run_experiment
 

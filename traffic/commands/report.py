@@ -1,4 +1,4 @@
-"""`traffic report`: show finished runs again."""
+"""`traffic report`: show finished runs and experiments again."""
 
 import sys
 from pathlib import Path
@@ -10,26 +10,32 @@ __all__ = ["report"]
 
 
 def report(
-    runs: Annotated[list[Path], typer.Argument(help="Folders that 'traffic run' wrote.")],
+    folders: Annotated[
+        list[Path], typer.Argument(metavar="RUN|EXPERIMENT...", help="Folders that were written.")
+    ],
     *,
+    html: Annotated[
+        Path | None, typer.Option(help="Write a web page of one file, which opens offline.")
+    ] = None,
+    csv: Annotated[
+        Path | None, typer.Option(help="Write scores, or the measures of all cells, as CSV.")
+    ] = None,
     json: Annotated[
         bool, typer.Option("--json", help="Print one JSON document instead of tables.")
     ] = False,
 ) -> None:
-    """Show what a run recognised, against the truth, or the scores of several; runs nothing."""
-    from pydantic_core import to_json
+    """Show what runs recognised, against the truth, or what an experiment measured; runs nothing."""
+    from traffic.commands.showing_reports import show_report
+    from traffic.reporting.reports import read_report
 
-    from traffic.commands.showing import show_result, show_scores
-    from traffic.results import read_result
-    from traffic.totals import total_score
-
-    results = [read_result(run) for run in runs]
-    total = total_score(results)
+    found = read_report(folders)
+    if html is not None:
+        found.write_page(html)
+        sys.stderr.write(f"page written to {html}\n")
+    if csv is not None:
+        found.write_csv(csv)
+        sys.stderr.write(f"table written to {csv}\n")
     if json:
-        document = results[0] if len(results) == 1 else {"runs": results, "score": total}
-        sys.stdout.write(to_json(document, indent=1).decode() + "\n")
-    elif len(results) == 1:
-        show_result(results[0])
-    else:
-        scores = {str(run): result.score for run, result in zip(runs, results, strict=True)}
-        show_scores({**scores, "all": total})
+        sys.stdout.write(found.as_json() + "\n")
+    elif html is None and csv is None:
+        show_report(found)

@@ -4,7 +4,6 @@ import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
 
-from pydantic_core import to_json
 from rich.box import SIMPLE_HEAD
 from rich.console import Console
 from rich.markup import escape
@@ -20,7 +19,6 @@ from traffic.experiments.running import Experiment
 
 __all__ = [
     "experiment_progress",
-    "json_from_experiment",
     "show_designs",
     "show_estimate",
     "show_experiment",
@@ -86,36 +84,6 @@ def show_experiment(experiment: Experiment) -> None:
         console.print(f"[red]failed[/]: {escape(error)}", highlight=False)
     if len(experiment.errors) > _MOST_ERRORS:
         console.print(f"and {len(experiment.errors) - _MOST_ERRORS} more", highlight=False)
-
-
-def json_from_experiment(experiment: Experiment) -> str:
-    """Return an experiment as one JSON document."""
-    cells = [
-        {
-            "cell": dict(cell.cell),
-            "runs": cell.runs,
-            "failed": cell.failed,
-            "measures": {name: _json_from_share(each) for name, each in cell.shares.items()},
-        }
-        for cell in experiment.cells
-    ]
-    design = experiment.design
-    document = {
-        "design": design.name,
-        "description": design.description,
-        "fixed": design.fixed,
-        "runs_per_cell": design.runs_per_cell,
-        "versions": experiment.versions,
-        "cells": cells,
-        "errors": experiment.errors,
-    }
-    return to_json(document, indent=1).decode()
-
-
-def _json_from_share(share: Share) -> dict[str, float | int | None]:
-    low, high = share.interval
-    counts = share._asdict()
-    return {**counts, "value": share.value, "low": low, "high": high}
 
 
 def _share(share: Share) -> str:

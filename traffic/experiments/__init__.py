@@ -6,5 +6,6 @@ runs, durable one by one), `folders` (where an experiment is written), `engine` 
 runs: processes of this machine or a cluster), `conducting` (an experiment from its beginning, or
 where it was cut off, to its end), `estimating` (how long it will take), `measures` (what is
 asked of the runs of a cell), `intervals` (how sure a share is), `tables` (all runs, and the
-measures of all cells), `comparing` (two experiments, or two groups of runs).
+measures of all cells), `request` (what a user asks), `running` (an experiment as a user asks for
+it), `documents` (for other programs), `comparing` (two experiments, or two runs).
 """

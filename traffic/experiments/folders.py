@@ -26,6 +26,7 @@ class Basis(BaseModel):
 
     Attributes:
         format: Version of the folder's format.
+        design: Name of the design.
         design_sha256: Digest of the text of the design.
         versions: Of this program, of Python, and of what results may depend on.
         files_sha256: Digests of the scenarios, networks, specifications and chronicles that are
@@ -35,6 +36,7 @@ class Basis(BaseModel):
     model_config = ConfigDict(extra="forbid", frozen=True)
 
     format: int = _FORMAT
+    design: str
     design_sha256: str
     versions: dict[str, str]
     files_sha256: dict[str, str]
@@ -58,6 +60,7 @@ class Basis(BaseModel):
 def basis_of(design: Path, files: Iterable[Path]) -> Basis:
     """Return what runs of a design that read *files* depend on."""
     return Basis(
+        design=design.stem,
         design_sha256=digest_of(design),
         versions=versions(),
         files_sha256={str(path): digest_of(path) for path in files},

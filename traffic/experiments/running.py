@@ -82,7 +82,7 @@ def read_experiment(path: Path, design: Design | None = None) -> Experiment:
     """
     folder = ExperimentFolder(path)
     basis = folder.basis()
-    design = design or read_design(folder.design)
+    design = design or read_design(folder.design).model_copy(update={"name": basis.design})
     outcomes = folder.outcomes()
     cells = measure_cells(design, outcomes)
     missing = design.n_runs - sum(cell.runs for cell in cells)
