@@ -71,7 +71,10 @@ from traffic.features.moving import Moving
 from traffic.features.pairs import NearPairs
 from traffic.features.positions import NoisyPositions
 from traffic.features.relations import CarRelations
+from traffic.features.sides import Sides
 from traffic.features.stability import StableFor
+from traffic.features.standing import Standing
+from traffic.features.stop_lines import StopLines
 from traffic.features.swaying import SWINGS, Swaying
 from traffic.world import World
 
@@ -398,6 +401,8 @@ def vocabularies_of(road_map: RoadMap) -> dict[str, Sequence[str]]:
         "link": road_map.links,
         "crossing": road_map.crossings,
         "signal": road_map.signals.names,
+        "over": road_map.signals.names,
+        "beyond": road_map.signals.names,
         "state": tuple(state.name.lower() for state in SignalState),
         "swing": SWINGS,
     }
@@ -423,6 +428,9 @@ def _units(world: World, made: Made) -> dict[str, Any]:
         "Headways": partial(Headways, world.road_map),
         "Following": Following,
         "Swaying": Swaying,
+        "Standing": Standing,
+        "StopLines": partial(StopLines, world.road_map),
+        "Sides": partial(Sides, world.road_map),
         "Changes": partial(Changes, vocabularies),
         "Chronicles": _Chronicles(made).recogniser,
         "RecognitionEvents": RecognitionEvents,

@@ -80,7 +80,7 @@ def test_what_is_made_of_a_stream_is_found():
     assert outputs_behind(specification, ["cars"])[:3] == (
         "cars", "recognised_turns", "recognised_overtakes",
     )  # fmt: skip
-    assert outputs_behind(specification, ["car_relations"]) == ("recognised_overtakes",)
+    assert outputs_behind(specification, ["car_relations"])[:1] == ("recognised_overtakes",)
     assert "percepts" in outputs_behind(specification, ["percepts[vision]"])
 
 

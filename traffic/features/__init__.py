@@ -2,6 +2,7 @@
 
 Read in this order: `carrying` (state that follows objects from frame to frame), `moving`,
 `stability`, `pairs`, `relations`, `headways` and `following` (who is next behind whom), `swaying`,
-`changes` (from columns to events), `link_turns` (what the map says, as events), `positions`
-(percepts without a camera), `reckless` (who was a reckless driver, from when until when).
+`parking` (where cars stand), `standing`, `stop_lines`, `sides`, `changes` (from columns to
+events), `link_turns` (what the map says, as events), `positions` (percepts without a camera),
+`reckless` (who was a reckless driver, from when until when).
 """

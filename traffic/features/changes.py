@@ -35,7 +35,8 @@ class Changes(Reactive):
         vocabularies: The names of the values of a column, by column.
         of: The first part of the attributes' names.
         arguments: Sort of the objects that the attributes are about. A table with columns
-            `first` and `second` is about two of them, any other about its own `id`.
+            `first` and `second` is about two of them, any other about its own `id`. Objects of a
+            sort that has a vocabulary are called as that says, others by sort and number.
     """
 
     def __init__(
@@ -44,6 +45,7 @@ class Changes(Reactive):
         self._vocabularies = vocabularies
         self._of = of
         self._sort = arguments
+        self._names = vocabularies.get(arguments)
         self._last = Table("none", (), {})
 
     def push(
@@ -85,9 +87,12 @@ class Changes(Reactive):
 
     def _arguments(self, table: Table) -> list[tuple[str, ...]]:
         if "first" not in table:
-            return [(f"{self._sort}{one}",) for one in table.ids.tolist()]
+            return [(self._name(one),) for one in table.ids.tolist()]
         pairs = zip(table["first"].tolist(), table["second"].tolist(), strict=True)
-        return [(f"{self._sort}{one}", f"{self._sort}{other}") for one, other in pairs]
+        return [(self._name(one), self._name(other)) for one, other in pairs]
+
+    def _name(self, one: int) -> str:
+        return f"{self._sort}{one}" if self._names is None else self._names[one]
 
     def _value(self, name: str, code: int) -> str | None:
         if code == UNKNOWN:

@@ -47,4 +47,9 @@ def _turns() -> dict[str, Claim]:
     }
 
 
-_EXCEPTIONS: Mapping[str, Claim] = {**_turns(), "convoy_caught_up": Claim("convoy")}
+_EXCEPTIONS: Mapping[str, Claim] = {
+    **_turns(),
+    "convoy_caught_up": Claim("convoy"),
+    "parking_beside_building": Claim("parking_beside_building", ("building",)),
+    "stop_in_crossing": Claim("stop_in_crossing", ("x",)),
+}

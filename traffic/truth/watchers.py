@@ -9,8 +9,12 @@ from networks.turns import Turn
 from traffic.truth.following import CONVOY, TAILGATING, FollowedWatcher, FollowingWatcher
 from traffic.truth.manoeuvres import Watcher
 from traffic.truth.overtakes import OvertakeWatcher
+from traffic.truth.parking import ParkingWatcher
+from traffic.truth.red_lights import RedLightWatcher
+from traffic.truth.standing import STANDING, StandingWatcher
 from traffic.truth.turns import TurnWatcher
 from traffic.truth.weaving import WeavingWatcher
+from traffic.truth.wrong_way import WRONG_WAY, WrongWayWatcher
 
 __all__ = ["WATCHERS", "Definition"]
 
@@ -50,5 +54,9 @@ WATCHERS: Mapping[str, Definition] = {
     "convoy": Definition(FollowingWatcher, part=CONVOY),
     "followed": Definition(FollowedWatcher.on),
     "weaving": Definition(WeavingWatcher.on),
+    "parking_beside_building": Definition(ParkingWatcher),
+    "red_light": Definition(RedLightWatcher.on),
+    "stop_in_crossing": Definition(StandingWatcher, part=STANDING),
+    "wrong_way": Definition(WrongWayWatcher, part=WRONG_WAY),
 }
 """By kind, in the order in which scores are shown."""
