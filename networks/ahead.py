@@ -40,12 +40,15 @@ class RoadsAhead:
     Args:
         road_map: The map.
         reach: How far ahead to look, metres.
+        undecided: Whether a point on a way through a junction may as well be as far along on any
+            other way that begins where this one does.
     """
 
-    def __init__(self, road_map: RoadMap, reach: float) -> None:
+    def __init__(self, road_map: RoadMap, reach: float, *, undecided: bool = False) -> None:
         self._lengths = road_map.road_length
-        self._successors = road_map.graph.successors
+        self._graph = road_map.graph
         self._reach = reach
+        self._undecided = undecided
         n = len(road_map.roads)
         self._begin = np.full(n, _UNKNOWN, dtype=np.intp)
         self._count = np.zeros(n, dtype=np.intp)
@@ -102,21 +105,29 @@ class RoadsAhead:
     def _roads_from(self, road: int) -> list[tuple[int, float]]:
         """Return the roads within reach of the end of *road*, and where they begin (Dijkstra).
 
-        A begin is metres from the begin of *road*, which is the first one itself.
+        A begin is metres from the begin of *road*, which is among them.
         """
-        begins = {road: 0.0}
-        queue = [(0.0, road)]
-        limit = float(self._lengths[road]) + self._reach
+        starts = self._alternatives(road) if self._undecided else (road,)
+        begins = dict.fromkeys(starts, 0.0)
+        queue = [(0.0, start) for start in starts]
+        limit = max(float(self._lengths[start]) for start in starts) + self._reach
         while queue:
             begin, here = heapq.heappop(queue)
             if begin > begins[here]:
                 continue
             end = begin + float(self._lengths[here])
-            for onward in self._successors[here]:
+            for onward in self._graph.successors[here]:
                 if end <= limit and end < begins.get(onward, np.inf):
                     begins[onward] = end
                     heapq.heappush(queue, (end, onward))
         return list(begins.items())
+
+    def _alternatives(self, road: int) -> tuple[int, ...]:
+        """Return the ways through a junction that begin where *road* does, and *road* itself."""
+        if road < self._graph.edge_count:
+            return (road,)
+        (before,) = self._graph.predecessors[road]
+        return self._graph.successors[before]
 
 
 def _column(found: Iterable[list[tuple[int, float]]], index: int) -> list[float]:

@@ -31,8 +31,9 @@ class Headways(Reactive):
     """Pairs of active cars of which one is behind the other, with the gap between them.
 
     For each table of cars one table of pairs comes out, with each car that can get to where
-    another one is within *reach*, along its road and through crossings. The first car of a pair
-    is the one behind. Columns:
+    another one is within *reach*, along its road and through crossings. Inside a crossing all ways
+    count that lead on from where it came, since nobody knows yet which one it takes. The first
+    car of a pair is the one behind. Columns:
 
     * `first`, `second`: ids of the cars;
     * `ahead`: metres from the centre of the first to that of the second, along the road;
@@ -54,7 +55,7 @@ class Headways(Reactive):
     def __init__(self, roads: RoadMap, *, reach: float, active_for: Duration) -> None:
         if reach <= 0:
             raise ValueError(f"expected a reach of more than 0 m, found {reach}")
-        self._ahead = RoadsAhead(roads, reach)
+        self._ahead = RoadsAhead(roads, reach, undecided=True)
         self._width = np.asarray(roads.road_width, dtype=np.float64)
         self._active_for = active_for
 

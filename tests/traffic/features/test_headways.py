@@ -49,8 +49,14 @@ def headways(road_map, cars, now=0):
 
 
 def shortest(road_map, road, goal):
-    """Return the metres from the begin of one road to that of another, by trying all ways."""
-    best, stack = math.inf, [(road, 0.0)]
+    """Return the metres from the begin of one road to that of another, by trying all ways.
+
+    On a way through a junction those beside it are tried as well.
+    """
+    edges = range(road_map.graph.edge_count)
+    ways = [road_map.successors(edge) for edge in edges if road in road_map.successors(edge)]
+    starts = ways[0] if ways and road not in edges else [road]
+    best, stack = math.inf, [(start, 0.0) for start in starts]
     while stack:
         here, travelled = stack.pop()
         if travelled >= min(best, REACH + road_map.road_length[road]):

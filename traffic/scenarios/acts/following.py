@@ -6,7 +6,7 @@ from typing import Annotated, Literal
 from pydantic import AfterValidator, Field
 
 from traffic.scenarios.acts.base import Act
-from traffic.scenarios.fields import DurationRange, Roads, Speeds
+from traffic.scenarios.fields import Distances, DurationRange, Roads, Speeds
 
 __all__ = ["CloseUp", "Column", "Tail", "Tailgate"]
 
@@ -44,6 +44,7 @@ class Column(Act):
         kind: `column`.
         speed: Of the first, m/s; the others keep up with it.
         lane: Counted from the outer side; None for the best one.
+        place: How far from the begin of the first road they come in, metres.
         number: The fewest and the most vehicles.
         time_gap: Of each to the one ahead.
     """
@@ -51,6 +52,7 @@ class Column(Act):
     kind: Literal["column"]
     speed: Speeds
     lane: _Lane | None = None
+    place: Distances | None = None
     number: _Counts
     time_gap: TimeGaps
 

@@ -21,8 +21,11 @@ _ROOM = 14.0
 _SAFE = 1.2
 """Time gap, seconds, that SUMO wants ahead of a new vehicle."""
 
-_IN_A_HURRY = 1.6
-"""How much faster than is allowed someone would drive who is held up."""
+_IN_A_HURRY = 1.3
+"""Speed of the others, in shares of what is allowed."""
+
+_CATCHING_UP = 2.5
+"""How much faster than the first one the others drive until they have come close, m/s."""
 
 _STANDING_GAP = 2.0
 """Metres that are kept however slow both drive, if that is less than half of the gap at speed."""
@@ -42,8 +45,9 @@ def tailgate(act: Tailgate, stage: Stage, generator: np.random.Generator) -> Ite
 def column(act: Column, stage: Stage, generator: np.random.Generator) -> Iterator[None]:
     """Let several come in, of which each stays behind the one ahead until the first leaves."""
     n = int(generator.integers(*act.number, endpoint=True))
+    place = None if act.place is None else float(generator.uniform(*act.place))
     with ExitStack() as stack:
-        row = _Row(act, stage, generator, stack)
+        row = _Row(act, stage, generator, stack, place)
         yield from row.come_in([_seconds(act.time_gap, generator) for _ in range(n - 1)])
         yield from row.stay()
 
@@ -77,14 +81,15 @@ def tail(act: Tail, stage: Stage, generator: np.random.Generator) -> Iterator[No
 class _Row:
     """Vehicles that drive one behind the other on one lane, each at its time gap.
 
-    The first one drives at its speed, if lights and others let it; the others would be faster if
-    they could, and are as close as SUMO's drivers are whose reaction time is their time gap.
+    The first one drives at its speed, if lights and others let it; the others would be a little
+    faster, and are as close as SUMO's drivers are whose reaction time is their time gap.
 
     Args:
         act: Says who comes in, where, and how fast.
         stage: Where.
         generator: Draws vehicles and speed.
         stack: Gives the vehicles back at the end.
+        place: Where on the first road they come in, metres; None for its begin.
     """
 
     def __init__(
@@ -93,11 +98,13 @@ class _Row:
         stage: Stage,
         generator: np.random.Generator,
         stack: ExitStack,
+        place: float | None = None,
     ) -> None:
         self._act = act
         self._stage = stage
         self._generator = generator
         self._stack = stack
+        self._place = place
         self._speed = float(generator.uniform(*act.speed))
         self._drivers: list[NativeDriver] = []
         self._time_gap = 0.0
@@ -114,6 +121,7 @@ class _Row:
             driver = yield from self._enter()
             self._stage.api.vehicle.setImperfection(driver.vehicle, 0.0)
             self._stage.api.vehicle.setSpeedFactor(driver.vehicle, _IN_A_HURRY)
+            self._stage.api.vehicle.setMaxSpeed(driver.vehicle, self._speed + _CATCHING_UP)
             self._keep(driver, time_gap)
 
     def stay(self, seconds: float = np.inf) -> Iterator[None]:
@@ -133,7 +141,7 @@ class _Row:
 
     def _enter(self) -> Generator[None, None, NativeDriver]:
         kind = drawn_type_name(self._act.types, self._generator)
-        entrance = Entrance(kind, self._act.route, self._act.lane, speed=self._speed)
+        entrance = Entrance(kind, self._act.route, self._act.lane, self._place, self._speed)
         vehicle = self._stage.enter(entrance, self._generator)
         driver = self._stack.enter_context(NativeDriver(self._stage, vehicle))
         while not driver.is_here:
