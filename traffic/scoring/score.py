@@ -1,5 +1,6 @@
 """Precision and recall of a run: what was recognised against what vehicles truly did."""
 
+from collections import deque
 from collections.abc import Collection, Iterable, Sequence
 from dataclasses import dataclass
 
@@ -21,6 +22,9 @@ from traffic.truth.manoeuvres import TrueManoeuvre
 from traffic.truth.watchers import WATCHERS
 
 __all__ = ["Scorer", "Verdict", "lines_scored", "unjudged"]
+
+_LATEST_FRAMES = 250
+"""How many frames are remembered: cars are known later than they were seen, by seconds at most."""
 
 Points = npt.NDArray[np.float64]
 
@@ -71,18 +75,19 @@ class Scorer:
         self._footprint = footprint
         self._truth = GroundTruth(road_map, simulation.lanes, self._kinds)
         self._association = Association()
-        self._frame: Frame | None = None
+        self._frames: deque[Frame] = deque(maxlen=_LATEST_FRAMES)
 
     def observe_frame(self, frame: Frame) -> None:
         """Take in the next frame of the simulation."""
-        self._frame = frame
+        self._frames.append(frame)
         self._truth.observe(frame, self._footprint)
 
     def observe_cars(self, sample: Sample[Table]) -> None:
-        """Take in the cars that are believed in, after the frame of the same time."""
-        if self._frame is None:
+        """Take in the cars that are believed in; the frame of that time is known already."""
+        frame = next((f for f in reversed(self._frames) if f.time <= sample.valid_time), None)
+        if frame is None:
             return
-        cars, vehicles = sample.value, self._frame.vehicles
+        cars, vehicles = sample.value, frame.vehicles
         observed = cars.select(cars["observed"])
         self._association.observe(
             sample.valid_time,
