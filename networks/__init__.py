@@ -3,9 +3,9 @@
 Read in this order: `geometry` (polylines), `parts` (a network in plain parts), `stretches` and
 `topology` (which junctions are crossings, which edges make a link), `graph` (directed roads),
 `turns` (left, right, straight, back), `links` (positions along links), `regions` (areas),
-`markings`, `signals` (where traffic lights are), `roads` (the `RoadMap`), `ahead` (what is ahead
-of what), `assembling` (from parts to map), `checking` and `reading` (SUMO networks), `building`
-(made-up ones), `errors`.
+`markings`, `signals` (where traffic lights are), `surroundings` (what lies beside the roads),
+`roads` (the `RoadMap`), `ahead` (what is ahead of what), `assembling` (from parts to map),
+`checking` and `reading` (SUMO networks), `building` (made-up ones), `errors`.
 """
 
 from networks.ahead import RoadsAhead
@@ -15,6 +15,7 @@ from networks.reading import read_road_map
 from networks.regions import Places
 from networks.roads import Moved, RoadMap
 from networks.signals import Signals, SignalState
+from networks.surroundings import Surroundings
 from networks.turns import Turn
 
 __all__ = [
@@ -28,6 +29,7 @@ __all__ = [
     "RoadsAhead",
     "SignalState",
     "Signals",
+    "Surroundings",
     "Turn",
     "UnknownPlaceError",
     "read_road_map",

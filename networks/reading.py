@@ -4,6 +4,7 @@ sumolib reads the network, after `networks.checking` has looked for what would c
 """
 
 from collections.abc import Iterable, Mapping
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -16,6 +17,7 @@ from networks.errors import NetworkFileError
 from networks.geometry import Points, has_length
 from networks.parts import Connection, Edge, Junction, Lane, NetworkParts
 from networks.roads import RoadMap
+from networks.surroundings import read_surroundings
 
 __all__ = ["read_network_parts", "read_road_map"]
 
@@ -39,11 +41,15 @@ _VEHICLE_CLASSES = frozenset(
 def read_road_map(path: Path | str) -> RoadMap:
     """Return the map of a SUMO network, `.net.xml` or `.net.xml.gz`.
 
+    What lies beside the roads is read from `.poly.xml` beside it, if there is such a file.
+
     Raises:
         NetworkFileError: The file is missing, cannot be read, is no SUMO network, refers to
-            edges that it does not have, or holds no road for vehicles.
+            edges that it does not have, or holds no road for vehicles; or the polygons have a
+            fault.
     """
-    return road_map_from_parts(read_network_parts(path))
+    road_map = road_map_from_parts(read_network_parts(path))
+    return replace(road_map, surroundings=read_surroundings(Path(path)))
 
 
 def read_network_parts(path: Path | str) -> NetworkParts:

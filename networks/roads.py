@@ -9,7 +9,7 @@ of the other direction stays on its road, with a larger *d*.
 """
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 from typing import NamedTuple
 
@@ -24,6 +24,7 @@ from networks.links import LinkPositions
 from networks.markings import Marking
 from networks.regions import NONE, Areas, Places, outlines
 from networks.signals import Signals
+from networks.surroundings import Surroundings
 from networks.turns import Turn, Turns
 
 __all__ = ["Lanes", "Moved", "RoadMap"]
@@ -86,6 +87,7 @@ class RoadMap:
         turns: From (link, crossing, link) to the way one turns.
         markings: What is painted on the roads.
         signals: Where traffic lights are.
+        surroundings: What lies beside the roads.
         left_hand: Whether one drives on the left.
     """
 
@@ -101,6 +103,7 @@ class RoadMap:
     turns: Turns
     markings: tuple[Marking, ...]
     signals: Signals
+    surroundings: Surroundings = field(default_factory=Surroundings)
     left_hand: bool
 
     def __repr__(self) -> str:
@@ -164,8 +167,10 @@ class RoadMap:
         return self.areas.locate(points)
 
     def distance_to_road(self, points: Points) -> Floats:
-        """Return the metres from each point to the nearest area of road, 0 inside."""
-        return self.areas.distance(points)
+        """Return the metres from each point to the nearest area of road or parking, 0 inside."""
+        return np.minimum(
+            self.areas.distance(points), self.surroundings.distance_to_parking(points)
+        )
 
     def project(self, points: Points, road: npt.ArrayLike) -> tuple[Floats, Floats]:
         """Return *s* and *d* of each point on its own road; NaN where the road is -1.
@@ -272,8 +277,9 @@ class RoadMap:
         return np.array([centre.x, centre.y])
 
     def road_polygons(self) -> list[Points]:
-        """Return outlines that together cover all road, each shape (k, 2), metres."""
-        return [ring for shape in self.areas.shapes for ring in outlines(shape)]
+        """Return outlines that together cover all road and parking, each shape (k, 2), metres."""
+        shapes = (*self.areas.shapes, *self.surroundings.parking)
+        return [ring for shape in shapes for ring in outlines(shape)]
 
     def crossing_polygons(self) -> list[Points]:
         """Return the outlines of the crossings, each shape (k, 2), metres."""

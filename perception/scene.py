@@ -22,6 +22,7 @@ _MARGIN = 120.0
 _FEWEST_CORNERS = 3
 _BUILDING_CLEARANCE = 9.0
 _TREE_CLEARANCE = 5.5
+_BUILDING_HEIGHT = (3.5, 7.0)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -34,6 +35,7 @@ class Ground:
         solid_lines: Painted edge lines.
         dashed_lines: Painted lines between lanes.
         stop_lines: Broad painted lines at which vehicles wait.
+        buildings: Outlines of the houses beside the roads, if they are known.
     """
 
     roads: tuple[Points, ...]
@@ -41,6 +43,7 @@ class Ground:
     solid_lines: tuple[Points, ...] = ()
     dashed_lines: tuple[Points, ...] = ()
     stop_lines: tuple[Points, ...] = ()
+    buildings: tuple[Points, ...] = ()
 
     @property
     def paved(self) -> tuple[Points, ...]:
@@ -102,16 +105,21 @@ def polygons_of(outlines: Sequence[Points]) -> npt.NDArray[np.object_]:
 
 
 def build_surroundings(ground: Ground, generator: np.random.Generator) -> Surroundings:
-    """Place houses along the roads of *ground* and trees about the country, at random."""
+    """Place houses along the roads of *ground* and trees about the country, at random.
+
+    Where the houses are known, each is a box around its outline, and no other is made up.
+    """
     outlines = polygons_of(ground.paved)
     if not len(outlines):
         return Surroundings()
     paved = shapely.STRtree(outlines)
     corners = np.concatenate([np.asarray(outline) for outline in ground.paved])
     low, high = corners.min(axis=0) - _MARGIN, corners.max(axis=0) + _MARGIN
-    buildings = _place_buildings(_scatter(low, high, _AREA_PER_BUILDING, generator), generator)
-    buildings[:, 2] = _angle_of_nearest_edge(buildings[:, :2], ground)
-    buildings = buildings[_is_clear(buildings, paved)]
+    buildings = _known_buildings(ground, generator)
+    if not len(buildings):
+        buildings = _place_buildings(_scatter(low, high, _AREA_PER_BUILDING, generator), generator)
+        buildings[:, 2] = _angle_of_nearest_edge(buildings[:, :2], ground)
+        buildings = buildings[_is_clear(buildings, paved)]
     trees = _place_trees(_scatter(low, high, _AREA_PER_TREE, generator), generator)
     trees = trees[_far_from(paved, trees[:, :2], _TREE_CLEARANCE)]
     trees = trees[_apart_from(trees, buildings)]
@@ -130,11 +138,25 @@ def _scatter(
     return generator.uniform(low, high, size=(count, 2))
 
 
+def _known_buildings(ground: Ground, generator: np.random.Generator) -> Points:
+    """Return the boxes around the outlines of the houses that are known."""
+    outlines = polygons_of(ground.buildings)
+    boxes = np.zeros((len(outlines), 6))
+    for row, outline in enumerate(outlines):
+        corners = shapely.get_coordinates(shapely.oriented_envelope(outline))[:-1]
+        along, across = corners[1] - corners[0], corners[2] - corners[1]
+        boxes[row, :2] = corners.mean(axis=0)
+        boxes[row, 2] = np.arctan2(along[1], along[0])
+        boxes[row, 3:5] = np.hypot(*along), np.hypot(*across)
+    boxes[:, 5] = generator.uniform(*_BUILDING_HEIGHT, len(boxes))
+    return boxes
+
+
 def _place_buildings(points: Points, generator: np.random.Generator) -> Points:
     count = len(points)
     length = generator.uniform(9.0, 19.0, count)
     width = length * generator.uniform(0.55, 0.95, count)
-    height = generator.uniform(3.5, 7.0, count)
+    height = generator.uniform(*_BUILDING_HEIGHT, count)
     return np.column_stack([points, np.zeros(count), length, width, height])
 
 

@@ -69,6 +69,7 @@ from traffic.features.headways import Headways
 from traffic.features.link_turns import LinkTurns
 from traffic.features.moving import Moving
 from traffic.features.pairs import NearPairs
+from traffic.features.parking import BesideBuilding
 from traffic.features.positions import NoisyPositions
 from traffic.features.relations import CarRelations
 from traffic.features.sides import Sides
@@ -406,6 +407,7 @@ def vocabularies_of(road_map: RoadMap) -> dict[str, Sequence[str]]:
         "state": tuple(state.name.lower() for state in SignalState),
         "swing": SWINGS,
     }
+        "beside_building": road_map.surroundings.names,
 
 
 def _units(world: World, made: Made) -> dict[str, Any]:
@@ -430,6 +432,7 @@ def _units(world: World, made: Made) -> dict[str, Any]:
         "Swaying": Swaying,
         "Standing": Standing,
         "StopLines": partial(StopLines, world.road_map),
+        "BesideBuilding": partial(BesideBuilding, world.road_map),
         "Sides": partial(Sides, world.road_map),
         "Changes": partial(Changes, vocabularies),
         "Chronicles": _Chronicles(made).recogniser,
@@ -469,3 +472,4 @@ def _ground(road_map: RoadMap) -> Ground:
         solid_lines=(*lines[MarkingKind.EDGE], *lines[MarkingKind.CENTRE_SOLID]),
         dashed_lines=(*lines[MarkingKind.LANE], *lines[MarkingKind.CENTRE_DASHED]),
     )
+        buildings=tuple(road_map.surroundings.outlines()),

@@ -29,6 +29,8 @@ class PathDriver:
     vehicle while it is on a lane.
 
     Attributes:
+        vehicle: SUMO's id.
+        path: What it follows.
         s: How far along the path the front bumper is, metres.
         aside: How far it is to the left of the path, metres.
         speed: Along the path, m/s.
@@ -43,6 +45,7 @@ class PathDriver:
     """
 
     def __init__(self, stage: Stage, vehicle: str, path: Path) -> None:
+        self.vehicle = vehicle
         self._native = NativeDriver(stage, vehicle)
         self._stage = stage
         self.path = path
@@ -61,7 +64,7 @@ class PathDriver:
         Args:
             braking: How hard it would brake, m/s²; it needs a second before it does.
         """
-        ahead = self._stage.api.vehicle.getLeader(self._native.vehicle, _SIGHT)
+        ahead = self._stage.api.vehicle.getLeader(self.vehicle, _SIGHT)
         if ahead is None or not ahead[0]:
             return np.inf
         leader, gap = ahead
@@ -87,7 +90,7 @@ class PathDriver:
             self._angle = 90.0 - float(np.degrees(self.path.heading(s) + sideways))
         self._native.require_here()
         self._stage.api.vehicle.moveToXY(
-            self._native.vehicle, "", -1, x, y, self._angle % 360.0, keepRoute=_ANYWHERE
+            self.vehicle, "", -1, x, y, self._angle % 360.0, keepRoute=_ANYWHERE
         )
         self.s, self.aside, self.speed = s, aside, speed
 

@@ -9,9 +9,11 @@ import numpy as np
 from traffic.scenarios.acts import Act
 from traffic.scenarios.acts.driving import Drive, Halt
 from traffic.scenarios.acts.following import CloseUp, Column, Tail, Tailgate
+from traffic.scenarios.acts.parking import Park
 from traffic.scenarios.acts.weaving import Swerve, Weave
 from traffic.sumo.acts.driving import drive, halt
 from traffic.sumo.acts.following import close_up, column, tail, tailgate
+from traffic.sumo.acts.parking import park
 from traffic.sumo.acts.performance import Performance, Script
 from traffic.sumo.acts.stage import Stage
 from traffic.sumo.acts.weaving import swerve, weave
@@ -41,4 +43,5 @@ _PERFORM: Mapping[type[Act], Perform] = {
     Tailgate: _script(tailgate),
     CloseUp: _script(close_up),
     Tail: _script(tail),
+    Park: _script(park),
 }

@@ -45,6 +45,7 @@ class Stage:
         step_length: Seconds.
         now: Time of the frame that the coming step makes, seconds; negative in the warm-up.
         vehicles: SUMO's ids of all vehicles that are there, in SUMO's order.
+        reserved: Points that performances have chosen to stand at.
 
     Args:
         libsumo: The running simulator.
@@ -59,6 +60,7 @@ class Stage:
         self.step_length = step_length
         self.now = 0.0
         self.vehicles: tuple[str, ...] = ()
+        self.reserved: list[tuple[float, float]] = []
         self._present: frozenset[str] = frozenset()
         self._types: Mapping[str, VehicleType] = {each.name: each for each in vehicle_types}
         self._n_entered = 0

@@ -1,21 +1,17 @@
 """Performances of `weave` and `swerve`."""
 
-from collections.abc import Generator, Iterator
+from collections.abc import Iterator
 
 import numpy as np
 
 from dyknow.time import SECOND
 from traffic.scenarios.acts.weaving import Swerve, Weave
 from traffic.scenarios.fields import DurationRange
-from traffic.sumo.acts.drawing import drawn_type_name
-from traffic.sumo.acts.path_driver import PathDriver, towards
-from traffic.sumo.acts.stage import Entrance, Stage
+from traffic.sumo.acts.path_driver import PathDriver
+from traffic.sumo.acts.stage import Stage
+from traffic.sumo.acts.steering import come_in, drive_on
 
 __all__ = ["swerve", "weave"]
-
-_GENTLE = 2.0
-_FIRM = 4.5
-"""m/s²; speeding up, and braking."""
 
 
 def weave(act: Weave, stage: Stage, generator: np.random.Generator) -> Iterator[None]:
@@ -23,7 +19,7 @@ def weave(act: Weave, stage: Stage, generator: np.random.Generator) -> Iterator[
     speed = generator.uniform(*act.speed)
     place = generator.uniform(*act.place)
     duration = _seconds(act.duration, generator)
-    driver = yield from _come_in(act, speed, stage, generator)
+    driver = yield from come_in((act.types, act.route, act.lane), speed, stage, generator)
     while driver.s < place and not driver.is_at_end:
         drive_on(driver, stage, speed)
         yield
@@ -41,33 +37,13 @@ def swerve(act: Swerve, stage: Stage, generator: np.random.Generator) -> Iterato
     speed = generator.uniform(*act.speed)
     place = generator.uniform(*act.place)
     target = generator.uniform(*act.width) * (-1.0 if act.rightwards else 1.0)
-    driver = yield from _come_in(act, speed, stage, generator)
+    driver = yield from come_in((act.types, act.route, act.lane), speed, stage, generator)
     while driver.s < place and not driver.is_at_end:
         drive_on(driver, stage, speed)
         yield
     yield from _shift(driver, stage, speed, (target, _seconds(act.going, generator)))
     yield from _shift(driver, stage, speed, (target, _seconds(act.staying, generator)))
     yield from _shift(driver, stage, speed, (0.0, _seconds(act.going, generator)))
-
-
-def drive_on(driver: PathDriver, stage: Stage, wanted: float, aside: float | None = None) -> None:
-    """Move the vehicle at the speed wanted, or as fast as whoever is ahead allows."""
-    safe = min(wanted, driver.safe_speed(_FIRM))
-    limit = _GENTLE if safe > driver.speed else 2 * _FIRM
-    speed = towards(driver.speed, safe, limit * stage.step_length)
-    driver.move(speed, driver.aside if aside is None else aside)
-
-
-def _come_in(
-    act: Weave | Swerve, speed: float, stage: Stage, generator: np.random.Generator
-) -> Generator[None, None, PathDriver]:
-    kind = drawn_type_name(act.types, generator)
-    roads = tuple(stage.ways(act.route))
-    vehicle = stage.enter(Entrance(kind, roads, act.lane, speed=speed), generator)
-    path = stage.lane_path(roads, act.lane)
-    while not stage.is_here(vehicle):
-        yield
-    return PathDriver(stage, vehicle, path)
 
 
 def _shift(
