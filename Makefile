@@ -47,6 +47,7 @@ networks: setup      ## Compile the bundled road networks again (needs the extra
 	$(BIN)/traffic network build data/networks/rural data/networks/rural/rural.net.xml --force
 	$(BIN)/traffic network build data/networks/avenue data/networks/avenue/avenue.net.xml --force
 	$(BIN)/traffic network build data/networks/quarter data/networks/quarter/quarter.net.xml --force
+	$(BIN)/traffic network build data/networks/high_street data/networks/high_street/high_street.net.xml --force
 
 clean:               ## Remove what the other targets made
 	rm -rf .venv .mypy_cache .ruff_cache .pytest_cache .hypothesis build dist
