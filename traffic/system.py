@@ -406,8 +406,8 @@ def vocabularies_of(road_map: RoadMap) -> dict[str, Sequence[str]]:
         "beyond": road_map.signals.names,
         "state": tuple(state.name.lower() for state in SignalState),
         "swing": SWINGS,
-    }
         "beside_building": road_map.surroundings.names,
+    }
 
 
 def _units(world: World, made: Made) -> dict[str, Any]:
@@ -430,9 +430,9 @@ def _units(world: World, made: Made) -> dict[str, Any]:
         "Headways": partial(Headways, world.road_map),
         "Following": Following,
         "Swaying": Swaying,
+        "BesideBuilding": partial(BesideBuilding, world.road_map),
         "Standing": Standing,
         "StopLines": partial(StopLines, world.road_map),
-        "BesideBuilding": partial(BesideBuilding, world.road_map),
         "Sides": partial(Sides, world.road_map),
         "Changes": partial(Changes, vocabularies),
         "Chronicles": _Chronicles(made).recogniser,
@@ -471,5 +471,5 @@ def _ground(road_map: RoadMap) -> Ground:
         junctions=tuple(road_map.crossing_polygons()),
         solid_lines=(*lines[MarkingKind.EDGE], *lines[MarkingKind.CENTRE_SOLID]),
         dashed_lines=(*lines[MarkingKind.LANE], *lines[MarkingKind.CENTRE_DASHED]),
-    )
         buildings=tuple(road_map.surroundings.outlines()),
+    )
