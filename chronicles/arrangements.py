@@ -4,7 +4,6 @@ from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
 from chronicles import syntax
-from chronicles.intervals import negated
 from chronicles.syntax import Displaced, Interval
 from dyknow.time import MILLISECOND
 
@@ -46,9 +45,9 @@ def _event_at(children: Sequence[Any]) -> Sequence[Any]:
     return event_type, moment.name, None if at_once else displacement
 
 
-def _displaced(children: Sequence[Any]) -> Sequence[Any]:
-    name, sign, interval = children
-    return str(name), negated(interval) if sign == "-" else interval
+def _difference(children: Sequence[Any]) -> Sequence[Any]:
+    later, _sign, earlier, offset = children
+    return str(later), str(earlier), offset
 
 
 def _length(children: Sequence[Any]) -> Sequence[Any]:
@@ -94,7 +93,7 @@ ARRANGEMENTS: Mapping[str, Callable[[Sequence[Any]], Sequence[Any]]] = {
     "comparison": _comparison,
     "value_set": _values,
     "event_at": _event_at,
-    "displaced": _displaced,
+    "difference": _difference,
     "length": _length,
     "chronicle": _chronicle,
     "named_constraint": _named_constraint,

@@ -29,18 +29,18 @@ NAME: /(?!(?:{"|".join(sorted(RESERVED_WORDS))})\b)[A-Za-z_]\w*/
 VARIABLE: /\?[A-Za-z_]\w*/
 STAR: /\*[A-Za-z_]\w*/
 _UNION: "|" | /\+(?=\s*[~\u223c({{A-Za-z_])/
-_DIFFERENCE.2: "\\" | /-(?=\s*[~\u223c({{A-Za-z_])/
+_DIFFERENCE.2: "\\" | /[-\u2212](?=\s*[~\u223c({{A-Za-z_])/
 _COMPLEMENT: "~" | "\u223c"
-START: "start"
-END: "end"
+START: /start(?!\w)/
+END: /end(?!\w)/
 DURATION: /\d{{1,18}}(?:\.\d{{1,9}})?(?![\d.])(?:[ \t]*(?:ns|us|ms|min|s|h)\b)?/
 INTEGER: /\d{{1,18}}(?!\d)/
 STRING: /"[^"\n]*"/
-ORDER: "<=" | ">=" | "<" | ">"
+ORDER: "<=" | ">=" | "<" | ">" | "\u2264" | "\u2265"
 EQUAL: "="
-EQUALITY: "==" | "!="
+EQUALITY: "==" | "!=" | "\u2260"
 PLUS: "+"
-MINUS: "-"
+MINUS: "-" | "\u2212"
 LEFT: "[" | "]"
 RIGHT: "[" | "]"
 COMMENT: /(?:#|\/\/)[^\n]*/
@@ -48,8 +48,10 @@ COMMENT: /(?:#|\/\/)[^\n]*/
 %ignore /\s+/
 """
 
+_IN_ASCII = {"\u2212": "-", "\u2264": "<=", "\u2265": ">=", "\u2260": "!="}
 _MOST_FAULTS = 20
-_STARTS = frozenset({"ATTRIBUTE", "DOMAIN"})
+_KEYWORD = re.compile(r'"([a-z_]+)"')
+_STARTS = frozenset({"_ATTRIBUTE", "_DOMAIN"})
 """Terminals that are accepted together only between declarations."""
 _LONGEST = 1 << 58
 
@@ -109,7 +111,7 @@ def _tree(
             accepted = _accepted(error)
         faults.append(fault)
         at = fault.span.start
-        parts = outline.faulty_parts(at, in_block="IF" in accepted, between=accepted >= _STARTS)
+        parts = outline.faulty_parts(at, in_block="_IF" in accepted, between=accepted >= _STARTS)
         start, end = next((part for part in parts if text[slice(*part)].strip()), (0, 0))
         if start == end or at >= len(text.rstrip()):
             break
@@ -120,13 +122,22 @@ def _tree(
 @cache
 def _grammar() -> Lark:
     text = Path(__file__).with_name("grammar.lark").read_text(encoding="utf-8")
+    keywords = sorted(set(_KEYWORD.findall(text)))
+    terminals = "".join(rf"_{word.upper()}: /{word}(?!\w)/" + "\n" for word in keywords)
     return Lark(
-        text + _TERMINALS,
+        _KEYWORD.sub(lambda match: f"_{match[1].upper()}", text) + _TERMINALS + terminals,
         parser="lalr",
         start="chronicle_file",
         propagate_positions=True,
         maybe_placeholders=True,
+        lexer_callbacks=dict.fromkeys(("MINUS", "ORDER", "EQUALITY"), _in_ascii),
     )
+
+
+def _in_ascii(token: Token) -> Token:
+    """Return a sign as it is written without special characters."""
+    plain = _IN_ASCII.get(token)
+    return token if plain is None else token.update(value=plain)
 
 
 class _Pieces(Transformer[Token, Any]):
@@ -183,6 +194,18 @@ class _Pieces(Transformer[Token, Any]):
 
     no_upper_limit = no_lower_limit
 
+    @v_args(meta=True)
+    def fixed(self, meta: Meta, items: list[Any]) -> syntax.Instant:
+        """Read `t1 + [5, 5]`; what is not at a fixed distance can only be compared."""
+        name, interval = items
+        span = Span(self._source, meta.start_pos, meta.end_pos)
+        if interval.lower is None or interval.lower != interval.upper:
+            message = "expected an instant at a fixed distance from another, such as 't1 + 5'"
+            found = self._source.text[span.start : span.end]
+            self.faults.append(ChronicleSyntaxError(f"{message}, found '{found}'", span))
+            return syntax.Instant(span, str(name), Duration(0))
+        return syntax.Instant(span, str(name), interval.lower)
+
     def interval_negated(self, items: list[Any]) -> Interval:
         _sign, interval = items
         return negated(interval)
@@ -195,6 +218,13 @@ class _Pieces(Transformer[Token, Any]):
     def interval_sum(self, items: list[Any]) -> Interval:
         left, sign, right = items
         return sum_of(left, negated(right) if sign == "-" else right)
+
+    def displacement(self, items: list[Any]) -> Interval:
+        sign, interval = items
+        return negated(interval) if sign == "-" else interval
+
+    displacement_shifted = interval_shifted
+    displacement_sum = interval_sum
 
     def interval_intersection(self, items: list[Any]) -> Interval:
         left, right = items

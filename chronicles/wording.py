@@ -50,7 +50,12 @@ def alternatives(terminals: Collection[str], pattern_by_name: Mapping[str, str])
         rest -= {"START", "END"}
     if "ORDER" in rest:
         rest -= {"EQUAL"}
-    words |= {_EXPECTED.get(name) or f"'{pattern_by_name.get(name, name)}'" for name in rest}
+    if "DURATION" in rest:
+        rest -= {"PLUS"}
+    for name in rest:
+        is_keyword = name.startswith("_") and not name.startswith("__")
+        sign = name[1:].lower() if is_keyword else pattern_by_name.get(name, name)
+        words.add(_EXPECTED.get(name) or f"'{sign}'")
     return sorted(words)
 
 
