@@ -1,10 +1,11 @@
 """From an event to the samples that changed its attribute: after a filter, and before it."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Collection, Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
 
+import numpy as np
 import pandas as pd
 
 from chronicles.events import Event
@@ -19,6 +20,8 @@ __all__ = ["Attributes", "Steps"]
 
 _NEAR = 15 * SECOND
 _MOST_NEAR = 3
+_SAMPLED = SECOND
+"""How much later than it began a value may be told by a stream that samples it."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -57,18 +60,23 @@ class Attributes:
     def _measures(self) -> pd.DataFrame:
         return self._run.read("measures")
 
-    def events_of(self, attribute: str) -> Iterator[Event]:
-        """Yield all events of an attribute in order of time, each as often as it was told."""
+    def events_of(self, attribute: str, streams: Collection[str] = ()) -> Iterator[Event]:
+        """Yield all events of an attribute in order of time, each as often as it was told.
+
+        Only those of some *streams* are told, if any are given.
+        """
         known = self._by_attribute.get(attribute)
         if known is not None:
+            known = known[known["stream"].isin(list(streams))] if streams else known
             for row in records_of(known.sort_values("time")):
                 yield _event(row)
 
-    def told(self, event: Event) -> dict[str, Any] | None:
-        """Return the row of *event* among what was kept; None if it was not."""
+    def told(self, event: Event, streams: Collection[str] = ()) -> dict[str, Any] | None:
+        """Return the row of *event* among what was kept of some *streams*; None if it was not."""
         known = self._by_attribute.get(event.attribute)
         if known is None:
             return None
+        known = known[known["stream"].isin(list(streams))] if streams else known
         whole = event.time // MILLISECOND
         for row in records_of(known[known["time"] // MILLISECOND == whole]):
             if _parts(_event(row)) == _parts(event):
@@ -85,9 +93,10 @@ class Attributes:
             available_time=row["available_time"] / MILLISECOND,
         )
 
-    def near(self, event: Event) -> list[FactEvent]:
+    def near(self, event: Event, streams: Collection[str] = ()) -> list[FactEvent]:
         """Return the events of the same attribute and arguments shortly before and after."""
-        same = [e for e in self.events_of(event.attribute) if e.arguments == event.arguments]
+        told = self.events_of(event.attribute, streams)
+        same = [each for each in told if each.arguments == event.arguments]
         before = [e for e in same if 0 < event.time - e.time <= _NEAR][-_MOST_NEAR:]
         after = [e for e in same if 0 < e.time - event.time <= _NEAR][:_MOST_NEAR]
         return [fact_of(each) for each in (*before, *after)]
@@ -97,9 +106,8 @@ class Attributes:
         column = event.attribute.rpartition(".")[2]
         for label in self._run.roles.providers(str(told["stream"])):
             at = self._rows(label, column, event.arguments)
-            found = at[at["valid_time"] == told["valid_time"]]
-            if len(found):
-                filtered = found.iloc[-1]
+            filtered = self._at(at, column, told["valid_time"], event.to_value)
+            if filtered is not None:
                 raw = self._raw(label, column, event.arguments, filtered)
                 delay = int(filtered["available_time"] - filtered["valid_time"])
                 return Change(
@@ -109,9 +117,12 @@ class Attributes:
                 )
         return None
 
-    def steps(self, attribute: str, arguments: tuple[str, ...]) -> Steps:
+    def steps(
+        self, attribute: str, arguments: tuple[str, ...], streams: Collection[str] = ()
+    ) -> Steps:
         """Return how an attribute of some objects changed over the whole run."""
-        found = [e for e in self.events_of(attribute) if e.arguments == arguments]
+        told = self.events_of(attribute, streams)
+        found = [each for each in told if each.arguments == arguments]
         return Steps(
             attribute=attribute,
             arguments=arguments,
@@ -119,12 +130,15 @@ class Attributes:
             values=tuple(event.to_value for event in found),
         )
 
-    def raw_steps(self, attribute: str, arguments: tuple[str, ...]) -> Steps | None:
+    def raw_steps(
+        self, attribute: str, arguments: tuple[str, ...], streams: Collection[str] = ()
+    ) -> Steps | None:
         """Return how it changed before the filter; None if there was none."""
         column = attribute.rpartition(".")[2]
         told = self._by_attribute.get(attribute)
-        streams = [] if told is None else list(dict.fromkeys(map(str, told["stream"])))
-        for label in (each for stream in streams for each in self._run.roles.providers(stream)):
+        known = [] if told is None else list(dict.fromkeys(map(str, told["stream"])))
+        asked = [stream for stream in known if not streams or stream in streams]
+        for label in (each for stream in asked for each in self._run.roles.providers(stream)):
             for provider in self._run.roles.providers(label):
                 rows = self._rows(provider, column, arguments)
                 if len(rows):
@@ -133,6 +147,19 @@ class Attributes:
                     values = tuple(self._run.value_of(column, code) for code in codes)
                     return Steps(attribute, arguments, times, values)
         return None
+
+    def _at(
+        self, rows: pd.DataFrame, column: str, time: int, value: str | None
+    ) -> pd.Series | None:
+        """Return the change to *value* at *time*, or of a sampled stream the last before it."""
+        codes = rows["after"].astype(int)
+        is_it = np.array([self._run.value_of(column, code) == value for code in codes], bool)
+        found = rows[is_it & (rows["valid_time"] <= time).to_numpy(bool)]
+        if found.empty:
+            return None
+        last: pd.Series = found.iloc[-1]
+        is_exact = bool(last["valid_time"] == time)
+        return last if is_exact or time - last["valid_time"] <= _SAMPLED else None
 
     def _raw(
         self, label: str, column: str, arguments: Sequence[str], filtered: pd.Series

@@ -9,10 +9,10 @@ import numpy as np
 import numpy.typing as npt
 
 from dyknow.streams.sample import Sample
-from dyknow.streams.table import Table
+from dyknow.streams.table import Table, positions_of
 from traffic.explaining.changing import ABSENT, changes_of
 
-__all__ = ["Columns", "changes_kept", "digest_of_table", "states_kept"]
+__all__ = ["Columns", "changes_kept", "digest_of", "states_kept"]
 
 Columns = dict[str, Any]
 """Arrays, or one value for all rows, by the names of the columns in a file."""
@@ -59,7 +59,10 @@ def states_kept(samples: Sequence[Sample[Table]], wanted: Iterable[str]) -> Colu
 
 
 def changes_kept(
-    samples: Sequence[Sample[Table]], previous: Table, wanted: Sequence[str]
+    samples: Sequence[Sample[Table]],
+    previous: Table,
+    wanted: Sequence[str],
+    beside: Sequence[Sample[Table]] = (),
 ) -> tuple[Columns, Columns]:
     """Return the changes of qualities from table to table, and the quantities at these times.
 
@@ -67,6 +70,7 @@ def changes_kept(
         samples: One after another.
         previous: The table before them.
         wanted: The columns in which changes are looked for.
+        beside: Further tables with quantities of the same objects at the same times.
     """
     tables = [previous, *(sample.value for sample in samples)]
     valid = np.array([sample.valid_time for sample in samples], dtype=np.int64)
@@ -88,25 +92,54 @@ def changes_kept(
         "after": after,
     }
     is_there = after != ABSENT
-    return changes, _quantities(rows, valid[table[is_there]], row[is_there])
+    keys = _Keys(valid[table[is_there]], ids[row[is_there]])
+    told = [_quantities(keys, each) for each in _by_columns([*samples, *beside])]
+    return changes, {
+        name: np.concatenate([each[name] for each in told]) if told else []
+        for name in ("column", "valid_time", "id", "value")
+    }
 
 
-def _quantities(
-    rows: _Rows, valid_times: npt.NDArray[np.int64], row: npt.NDArray[np.intp]
-) -> Columns:
-    """Return the quantities in some *row*s, one line each."""
-    example = next((table for table in rows.tables if len(table)), None)
-    names = quantities_of(example) if example is not None else ()
-    columns = {name: rows.column(name) for name in names}
-    known = {name: column for name, column in columns.items() if column is not None}
-    row, first = np.unique(row, return_index=True)
-    n = len(known)
-    values = [column[row].astype(np.float32) for column in known.values()]
+class _Keys:
+    """Objects at times, each once."""
+
+    def __init__(self, times: npt.NDArray[np.int64], ids: npt.NDArray[np.int64]) -> None:
+        both = np.unique(np.stack([times, ids]), axis=1)
+        self._times, self._ids = both
+
+    def at(self, time: int) -> npt.NDArray[np.int64]:
+        """Return the objects at one time."""
+        first, last = np.searchsorted(self._times, [time, time + 1])
+        found: npt.NDArray[np.int64] = self._ids[first:last]
+        return found
+
+
+def _by_columns(samples: Iterable[Sample[Table]]) -> list[list[Sample[Table]]]:
+    """Return the tables with quantities, those with the same ones together."""
+    groups: dict[tuple[str, ...], list[Sample[Table]]] = {}
+    for sample in samples:
+        if len(sample.value) and (names := quantities_of(sample.value)):
+            groups.setdefault(names, []).append(sample)
+    return list(groups.values())
+
+
+def _quantities(keys: _Keys, samples: Sequence[Sample[Table]]) -> Columns:
+    """Return the quantities of some objects at some times, one line each."""
+    names = quantities_of(samples[0].value)
+    told: list[tuple[int, Table]] = []
+    for sample in samples:
+        wanted = keys.at(sample.valid_time)
+        at = positions_of(wanted, sample.value.ids) if len(wanted) else wanted
+        if (at >= 0).any():
+            told.append((sample.valid_time, sample.value.select(at[at >= 0])))
+    times = np.repeat([time for time, _ in told], [len(table) for _, table in told])
+    ids = np.concatenate([np.empty(0, dtype=np.int64), *(table.ids for _, table in told)])
+    values = [table[name].astype(np.float32) for name in names for _, table in told]
     return {
-        "column": np.repeat(list(known), len(row)),
-        "valid_time": np.tile(valid_times[first], n),
-        "id": np.tile(rows.ids()[row], n),
-        "value": np.concatenate(values) if values else np.empty(0, dtype=np.float32),
+        "column": np.repeat(np.array(names, dtype=object), len(ids)),
+        "valid_time": np.tile(times.astype(np.int64), len(names)),
+        "id": np.tile(ids, len(names)),
+        "value": np.concatenate([np.empty(0, dtype=np.float32), *values]),
     }
 
 
@@ -136,10 +169,12 @@ def quantities_of(table: Table) -> tuple[str, ...]:
     )
 
 
-def digest_of_table(table: Table) -> int:
-    """Return a number that is another one if any object of *table* is another or elsewhere."""
-    digest = zlib.crc32(table.ids.tobytes())
-    for name in ("position", "heading"):
-        if name in table:
-            digest = zlib.crc32(table[name].tobytes(), digest)
+def digest_of(values: Iterable[Any]) -> int:
+    """Return a number that is another one if anything in the tables among *values* is another."""
+    digest = 0
+    for table in values:
+        if isinstance(table, Table):
+            digest = zlib.crc32(table.ids.tobytes(), digest)
+            for column in table.columns.values():
+                digest = zlib.crc32(column.tobytes(), digest)
     return digest

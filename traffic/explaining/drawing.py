@@ -15,8 +15,10 @@ __all__ = [
     "INK",
     "PAPER",
     "STYLE",
+    "colour_of_band",
     "colours_of",
     "draw_box",
+    "draw_name",
     "draw_trail",
     "instants_text",
     "seconds_text",
@@ -45,7 +47,7 @@ def colours_of(symbols: Sequence[str]) -> dict[str, str]:
     return {symbol: _PALETTE[at % len(_PALETTE)] for at, symbol in enumerate(symbols)}
 
 
-def draw_box(axes: Axes, seen: Seen, corners: Any, colour: str) -> None:
+def draw_box(axes: Axes, seen: Seen, corners: Any, colour: str, *, is_below: bool = False) -> None:
     """Outline an object; dashed if it was predicted, and say what it is called."""
     outline = np.asarray(corners, dtype=np.float64)
     is_predicted = seen.percept is None
@@ -60,15 +62,22 @@ def draw_box(axes: Axes, seen: Seen, corners: Any, colour: str) -> None:
     )
     box.set_path_effects([Stroke(linewidth=3.4, foreground=_HALO, alpha=0.75), withStroke()])
     axes.add_patch(box)
+    name = f"{seen.symbol} (predicted)" if is_predicted else seen.symbol
+    draw_name(axes, name, outline, colour, is_below=is_below)
+
+
+def draw_name(axes: Axes, name: str, outline: Any, colour: str, *, is_below: bool = False) -> None:
+    """Write what an object is called, above its outline or below it."""
     is_upside_down = axes.yaxis_inverted()
-    top = outline[:, 1].min() if is_upside_down else outline[:, 1].max()
+    rows = outline[:, 1]
+    edge = rows.max() if is_below == is_upside_down else rows.min()
     label = axes.annotate(
-        f"{seen.symbol} (predicted)" if is_predicted else seen.symbol,
-        (float(outline[:, 0].mean()), float(top)),
-        xytext=(0, 5),
+        name,
+        (float(outline[:, 0].mean()), float(edge)),
+        xytext=(0, -5 if is_below else 5),
         textcoords="offset points",
         ha="center",
-        va="bottom",
+        va="top" if is_below else "bottom",
         fontsize=9,
         fontweight="bold",
         color=colour,

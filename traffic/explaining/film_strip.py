@@ -12,7 +12,7 @@ from dyknow.time import MILLISECOND, SECOND
 from networks.markings import MarkingKind
 from networks.roads import RoadMap
 from perception.camera import Camera
-from traffic.explaining.drawing import draw_box, draw_trail, instants_text, seconds_text
+from traffic.explaining.drawing import draw_box, draw_name, draw_trail, instants_text, seconds_text
 from traffic.explaining.explanation import Frame
 from traffic.explaining.images import Image
 from traffic.explaining.objects import Objects, corners_of
@@ -33,6 +33,7 @@ _CROSSING = "#979ea7"
 _PAINT = "#f3f5f7"
 _OTHER = "#e9ecef"
 _OTHER_EDGE = "#5b6470"
+_EDGE = "#10151c"
 
 Points = npt.NDArray[np.float64]
 
@@ -74,8 +75,10 @@ def draw_image(axes: Axes, frame: Frame, image: Image, window: Window, look: "Lo
     for seen in frame.seen:
         track = look.camera.image_from_ground(_track(look.objects, seen.symbol, frame.time))
         draw_trail(axes, track, look.colours[seen.symbol])
+    lowest = _lowest(frame, has_camera=True)
     for seen in frame.seen:
-        draw_box(axes, seen, seen.box, look.colours[seen.symbol])
+        is_below = seen.symbol == lowest
+        draw_box(axes, seen, seen.box, look.colours[seen.symbol], is_below=is_below)
     _title(axes, frame)
 
 
@@ -90,15 +93,19 @@ def draw_map(axes: Axes, frame: Frame, window: Window, look: "Look") -> None:
             axes.fill(*corners.T, facecolor=_OTHER, edgecolor=_OTHER_EDGE, lw=0.8, zorder=4)
     for seen in frame.seen:
         draw_trail(axes, _track(look.objects, seen.symbol, frame.time), look.colours[seen.symbol])
+    lowest = _lowest(frame, has_camera=False)
     for seen in frame.seen:
         state = look.objects.state_at(seen.symbol, round(frame.time * MILLISECOND))
         if state is not None:
             x, y, heading = float(state["x"]), float(state["y"]), float(state["heading"])
             corners = corners_of(x, y, heading, *seen.size)
-            axes.fill(*corners.T, facecolor=look.colours[seen.symbol], lw=0, alpha=0.85, zorder=5)
-            draw_box(axes, seen, corners, look.colours[seen.symbol])
+            colour = look.colours[seen.symbol]
+            style = "-" if seen.percept is not None else (0, (2, 1.5))
+            axes.fill(*corners.T, facecolor=colour, edgecolor=_EDGE, lw=1, ls=style, zorder=6)
+            name = seen.symbol if seen.percept is not None else f"{seen.symbol} (predicted)"
+            draw_name(axes, name, corners, colour, is_below=seen.symbol == lowest)
         if seen.percept is not None:
-            axes.plot(*seen.position, marker="+", ms=7, mew=1.4, color="#10151c", zorder=9)
+            axes.plot(*seen.position, marker="+", ms=7, mew=1.4, color=_EDGE, zorder=9)
     _title(axes, frame)
 
 
@@ -117,6 +124,15 @@ class Look:
     colours: Mapping[str, str]
     road_map: RoadMap
     camera: Camera | None
+
+
+def _lowest(frame: Frame, *, has_camera: bool) -> str | None:
+    """Return the object that is drawn lowest, if there are several: its name goes below it."""
+    rows = {
+        seen.symbol: seen.pixel[1] if has_camera and seen.pixel else -seen.position[1]
+        for seen in frame.seen
+    }
+    return max(rows, key=lambda symbol: rows[symbol]) if len(rows) > 1 else None
 
 
 def _points(frame: Frame, *, has_camera: bool) -> Points:
@@ -185,7 +201,7 @@ def _draw_roads(axes: Axes, road_map: RoadMap, window: Window) -> None:
     right, low = window.x + window.width / 2, window.y - window.height / 2
     inset = window.width * 0.04
     ends = [right - inset - length, right - inset]
-    axes.plot(ends, [low + inset] * 2, color="#10151c", lw=2, zorder=9)
+    axes.plot(ends, [low + inset] * 2, color=_EDGE, lw=2, zorder=9)
     axes.text(
         sum(ends) / 2,
         low + inset * 1.4,

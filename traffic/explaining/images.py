@@ -24,7 +24,7 @@ from dyknow.time import SECOND, TimePoint
 from networks.roads import RoadMap
 from perception.camera import Camera
 from traffic.errors import ExplanationError
-from traffic.explaining.columns import digest_of_table
+from traffic.explaining.columns import digest_of
 from traffic.explaining.kept import KeptRun
 from traffic.sumo.feeding import FrameFeed
 from traffic.sumo.opening import open_simulation
@@ -113,15 +113,15 @@ class _Known:
         self._number_by_time = {time: number for number, time in enumerate(times)}
         self._digests = rows["digest"].tolist()
 
-    def number_of(self, vehicles: Sample[Any]) -> int | None:
-        """Return the number of the image of *vehicles*; None if there was none.
+    def number_of(self, time: TimePoint, shown: Iterable[Any]) -> int | None:
+        """Return the number of the image of some time; None if there was none.
 
         Raises:
-            ExplanationError: They are not those that were filmed.
+            ExplanationError: What it is to show is not what was filmed.
         """
-        number = self._number_by_time.get(vehicles.valid_time)
-        if number is not None and self._digests[number] != digest_of_table(vehicles.value):
-            raise ExplanationError(_changed(self._run, vehicles.valid_time))
+        number = self._number_by_time.get(time)
+        if number is not None and self._digests[number] != digest_of(shown):
+            raise ExplanationError(_changed(self._run, time))
         return number
 
     def is_wanted(self, number: int) -> bool:
@@ -145,10 +145,15 @@ class _Chooser(Reactive):
     def push(self, now: TimePoint, inputs: tuple[Sample[Any], ...]) -> Iterable[Sample[Any]]:
         """Take or pass over the image of what is new in the first input; emit nothing."""
         vehicles, pose = inputs[:2]
-        if NO_VALUE in (vehicles.value, pose.value) or vehicles.valid_time <= self._last:
+        if (
+            vehicles.value is NO_VALUE
+            or pose.value is NO_VALUE
+            or vehicles.valid_time <= self._last
+        ):
             return ()
         self._last = vehicles.valid_time
-        number = self._known.number_of(vehicles)
+        shown = (sample.value for sample in inputs)
+        number = self._known.number_of(vehicles.valid_time, shown)
         if number is not None and self._known.is_wanted(number):
             for sample in self._camera.push(now, inputs):
                 self.images[number] = sample.value
@@ -187,6 +192,6 @@ def _changed(run: KeptRun, time: int) -> str:
     versions = ", ".join(f"{name} {number}" for name, number in run.origin.versions.items())
     return (
         f"the images of '{run.folder}' cannot be made again: at {time / SECOND:.2f} s the "
-        f"vehicles are not those that were filmed. The run was made with {versions}, and its "
+        f"vehicles or signals are not those that were filmed. The run was made with {versions}; its "
         "files may have changed since then"
     )

@@ -25,7 +25,7 @@ from networks.roads import RoadMap
 from traffic.explaining.columns import (
     Columns,
     changes_kept,
-    digest_of_table,
+    digest_of,
     qualities_of,
     states_kept,
 )
@@ -38,7 +38,7 @@ __all__ = ["explanations_kept"]
 _MOST_ROWS = 100_000
 _MOST_TABLES = 2_000
 _NOTHING = Table("nothing", (), {})
-_RAW_KEY = "explanations"
+_KEY = "explanations"
 
 
 @contextmanager
@@ -123,8 +123,10 @@ class _Keeper:
         self._events: dict[str, list[Sample[tuple[Event, ...]]]] = {}
         self._recognitions: dict[str, list[Sample[tuple[Recognition, ...]]]] = {}
         self._images: dict[str, list[tuple[TimePoint, int]]] = {}
-        self._filmed: tuple[TimePoint, int] = TimePoint(-1), 0
+        self._filmed: dict[str, Any] = {}
         self._waiting = 0
+        self._is_full = False
+        self._now = TimePoint(-1)
         self._links_of = [
             label for label in self._roles.links if self._roles.generators[label]["kind"] == "link"
         ]
@@ -157,45 +159,58 @@ class _Keeper:
             self._connect(label, self._events.setdefault(label, []).append)
         for label in roles.recognitions:
             self._connect(label, self._recognitions.setdefault(label, []).append)
-        kept = (*roles.anchored, *roles.percepts, *roles.attributes, *roles.raw)
+        objects = (*roles.anchored, *roles.percepts)
+        kept = (*objects, *roles.attributes, *roles.raw, *roles.measured)
         for label in dict.fromkeys(kept):
             self._connect(label, self._taker(self._tables.setdefault(label, _Tables())))
         for label in roles.images:
-            self._connect(label, self._photographer(self._images.setdefault(label, [])))
+            self._connect(label, self._photographer(label, self._images.setdefault(label, [])))
         for label in roles.filmed:
-            self._connect(label, self._note_filmed)
+            self._connect(label, self._watcher(label), "filmed")
 
-    def _connect(self, label: str, receive: Callable[[Sample[Any]], None]) -> None:
-        self._kernel.generator(Label(label)).connect((_RAW_KEY, label), receive)
+    def _connect(
+        self, label: str, receive: Callable[[Sample[Any]], None], purpose: str = "kept"
+    ) -> None:
+        self._kernel.generator(Label(label)).connect((_KEY, purpose), receive)
 
     def _taker(self, tables: _Tables) -> Callable[[Sample[Any]], None]:
         def take(sample: Sample[Any]) -> None:
             if isinstance(sample.value, Table):
+                if self._is_full and sample.available_time > self._now:
+                    self._flush()
+                self._now = sample.available_time
                 tables.samples.append(sample)
                 self._waiting += len(sample.value)
-                if self._waiting > _MOST_ROWS or len(tables.samples) > _MOST_TABLES:
-                    self._flush()
+                is_long = len(tables.samples) >= _MOST_TABLES
+                self._is_full |= is_long or self._waiting >= _MOST_ROWS
 
         return take
 
-    def _note_filmed(self, sample: Sample[Any]) -> None:
-        if isinstance(sample.value, Table):
-            self._filmed = sample.valid_time, digest_of_table(sample.value)
-
-    def _photographer(self, images: list[tuple[TimePoint, int]]) -> Callable[[Sample[Any]], None]:
+    def _watcher(self, label: str) -> Callable[[Sample[Any]], None]:
         def note(sample: Sample[Any]) -> None:
-            time, digest = self._filmed
-            images.append((sample.valid_time, digest if time == sample.valid_time else 0))
+            self._filmed[label] = sample.value
+
+        return note
+
+    def _photographer(
+        self, label: str, images: list[tuple[TimePoint, int]]
+    ) -> Callable[[Sample[Any]], None]:
+        providers = self._roles.providers(label)
+
+        def note(sample: Sample[Any]) -> None:
+            shown = (self._filmed.get(provider) for provider in providers)
+            images.append((sample.valid_time, digest_of(shown)))
 
         return note
 
     def _flush(self) -> None:
         """Write all tables that are waiting."""
-        self._waiting = 0
+        self._waiting, self._is_full = 0, False
         roles = self._roles
         qualities = self._qualities()
-        for label, tables in self._tables.items():
-            previous, samples = tables.previous, tables.take()
+        previous_by_label = {label: tables.previous for label, tables in self._tables.items()}
+        taken = {label: tables.take() for label, tables in self._tables.items()}
+        for label, samples in taken.items():
             example = next((each.value for each in samples if len(each.value)), None)
             if example is None:
                 continue
@@ -204,7 +219,13 @@ class _Keeper:
                 if label in labels:
                     self._files.write(name, label, states_kept(samples, SCHEMAS[name].names[3:]))
             if label in qualities:
-                changes, quantities = changes_kept(samples, previous, qualities[label])
+                measured = [p for p in roles.providers(label) if p in roles.measured]
+                changes, quantities = changes_kept(
+                    samples,
+                    previous_by_label[label],
+                    qualities[label],
+                    [sample for each in measured for sample in taken.get(each, ())],
+                )
                 self._files.write("changes", label, changes)
                 self._files.write("measures", label, quantities)
 

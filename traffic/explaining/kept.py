@@ -113,7 +113,9 @@ class KeptRun:
             return None
         if names is None:
             return {0: "false", 1: "true"}.get(code, str(code))
-        return f"no_{column}" if code < 0 else names[code]
+        if code < 0:
+            return f"no_{column}"
+        return names[code] if code < len(names) else str(code)
 
     def read(self, name: str, filters: list[tuple[str, str, Any]] | None = None) -> pd.DataFrame:
         """Return the rows of a file that *filters* let through.

@@ -21,11 +21,11 @@ __all__ = ["draw", "picture_of"]
 
 _WIDTH = 15.0
 _SIDE = 0.35
-_NAMES = 2.9
+_NAMES = 3.1
 _HEAD = 0.95
 _FOOT = 0.62
 _ROW = 0.42
-_GAP = 0.85
+_GAP = 0.78
 _DOTS_PER_INCH = 130
 _VERDICTS = {True: "the truth agrees", False: "the truth does not agree", None: ""}
 
@@ -119,15 +119,15 @@ def _write(figure: Figure, explanation: Explanation, story: Story, remark: str) 
     if story.constants:
         notes.append(f"Unchanged: {'; '.join(story.constants)}.")
     notes.append(
-        "◇ event of the chronicle; thin bar below: the value before it was filtered; green: "
-        "counted, red: where no event may be."
+        "▲ frame; ◇ event of the chronicle; thin bar below: the value before it was filtered; "
+        "green: counted; red: no event may be."
     )
-    caption = fill(" ".join(notes), 190)
+    caption = fill(" ".join(notes), 215)
     figure.text(x, 0.12 / height, caption, fontsize=8, color=FAINT, va="bottom")
 
 
 def _title(told: RecognitionExplanation) -> str:
-    listed = ", ".join(f"{name} = {value}" for name, value in told.values.items())
+    listed = ", ".join(each.symbol for each in told.objects)
     return f"{told.chronicle.replace('_', ' ')}   {listed}"
 
 
@@ -138,7 +138,9 @@ def _subtitle(explanation: Explanation) -> str:
         f"{told.begin / 1000:.1f} s to {told.end / 1000:.1f} s, "
         f"recognised at {told.recognised_at / 1000:.1f} s"
     )
+    values = ", ".join(f"{name} = {value}" for name, value in told.values.items())
     parts = [
+        values,
         f"{number}{explanation.run}",
         f"{explanation.scenario}, view {explanation.settings.get('view')}",
         span,

@@ -4,7 +4,7 @@ Nothing here knows labels or units by name: sorts of streams, kinds of processes
 whom say what is an event, an attribute, an object or an image.
 """
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -15,6 +15,7 @@ __all__ = ["EVENTS", "RECOGNITIONS", "Roles"]
 EVENTS = "events"
 RECOGNITIONS = "recognitions"
 _LINK = "link"
+_SOURCE = "source"
 _UNIT = "unit"
 
 
@@ -59,15 +60,21 @@ class Roles:
 
     @cached_property
     def anchored(self) -> tuple[str, ...]:
-        """The streams of the highest objects: linked, and not linked to anything further."""
-        below = {provider for label in self.links for provider in self.providers(label)}
-        return tuple(label for label in self.links if label not in below)
+        """The streams of the objects that events are about: the first links that one meets.
+
+        From the streams of events and of recognitions one goes upstream, up to the first objects
+        that a link process has made.
+        """
+        found: dict[str, None] = {}
+        for label in (*self.events, *self.recognitions):
+            found |= dict.fromkeys(self._first_links(label))
+        return tuple(label for label in self.links if label in found)
 
     @cached_property
     def percepts(self) -> tuple[str, ...]:
-        """The streams of the lowest objects: what others are linked to, not linked themselves."""
+        """The streams of the lowest objects: others are linked to them, and nothing is below."""
         below = dict.fromkeys(p for label in self.links for p in self.providers(label))
-        return tuple(label for label in below if label not in self.links)
+        return tuple(each for each in below if not set(self.upstream(each)) & set(self.links))
 
     @cached_property
     def attributes(self) -> tuple[str, ...]:
@@ -79,14 +86,17 @@ class Roles:
     @cached_property
     def raw(self) -> tuple[str, ...]:
         """What the streams of attributes are made of directly, such as values before a filter."""
-        below = dict.fromkeys(p for label in self.attributes for p in self.providers(label))
-        known = {*self.attributes, *self.percepts, *self.images}
-        return tuple(label for label in below if label not in known)
+        return self._below(self.attributes)
+
+    @cached_property
+    def measured(self) -> tuple[str, ...]:
+        """What the raw streams are made of, if that is not objects: it may hold quantities."""
+        return tuple(label for label in self._below(self.raw) if label not in self.links)
 
     @cached_property
     def filmed(self) -> tuple[str, ...]:
-        """What images show first of all, such as vehicles: the first input of what makes them."""
-        return tuple(dict.fromkeys(each[0] for each in map(self.providers, self.images) if each))
+        """What images are made of, such as vehicles."""
+        return tuple(dict.fromkeys(p for label in self.images for p in self.providers(label)))
 
     def providers(self, label: str) -> tuple[str, ...]:
         """Return the labels that feed *label* directly."""
@@ -102,6 +112,38 @@ class Roles:
             ahead = list(dict.fromkeys(p for each in ahead for p in self.providers(each)))
             ahead = [each for each in ahead if each not in seen]
             seen |= dict.fromkeys(ahead)
+
+    def told_to(self, recogniser: str) -> frozenset[str]:
+        """Return the streams of events that a stream of recognitions is made of.
+
+        These are its inputs; if some of them are no events, all events upstream of it.
+        """
+        inputs = self.providers(recogniser)
+        if inputs and set(inputs) <= set(self.events):
+            return frozenset(inputs)
+        return frozenset(self.upstream(recogniser)) & frozenset(self.events)
+
+    def _first_links(self, label: str) -> Iterator[str]:
+        """Yield the first labels of links on every way upstream from *label*."""
+        ahead, seen = [label], {label}
+        while ahead:
+            one = ahead.pop()
+            if one in self.links:
+                yield one
+                continue
+            new = [each for each in self.providers(one) if each not in seen]
+            seen.update(new)
+            ahead += new
+
+    def _below(self, labels: Iterable[str]) -> tuple[str, ...]:
+        """Return what feeds some streams, without percepts, images, sources and themselves."""
+        below = dict.fromkeys(p for label in labels for p in self.providers(label))
+        known = {*labels, *self.percepts, *self.images}
+        return tuple(
+            each
+            for each in below
+            if each not in known and self.generators[each]["kind"] != _SOURCE
+        )
 
     def _of_sort(self, sort: str) -> tuple[str, ...]:
         return tuple(each["label"] for each in self.network["generators"] if each["sort"] == sort)

@@ -78,17 +78,22 @@ def story_of(walker: Walker, told: RecognitionExplanation) -> Story:
     """Return what a picture of an explained recognition shows."""
     margin = max(_LEAST_MARGIN, _SHARE * (told.end - told.begin))
     reach = told.begin - max(_REACH, told.end - told.begin)
-    near = [time for time in told.instants.values() if time >= reach]
+    about_objects = {each.event.time for each in told.events if each.objects}
+    near = [time for time in about_objects if time >= reach]
     begin = max(min([told.begin, *near]) - margin, 0.0)
     end = max([told.end, told.recognised_at, *near]) + margin
     instants: dict[float, list[str]] = {}
     earlier: dict[float, list[str]] = {}
     for name, time in sorted(told.instants.items(), key=lambda item: (item[1], item[0])):
-        (instants if time >= begin and time >= reach else earlier).setdefault(time, []).append(
-            name
-        )
+        shown = instants if time >= begin and time >= reach else earlier
+        shown.setdefault(time, []).append(name)
     bands = list(_bands(walker, told))
-    moving = [band for band in bands if _is_telling(band, begin, end)]
+    symbols = {each.symbol for each in told.objects}
+    moving = [
+        band
+        for band in bands
+        if _is_telling(band, begin if symbols & set(band.steps.arguments) else told.begin, end)
+    ]
     return Story(
         begin=begin,
         end=end,
@@ -121,6 +126,7 @@ def _frames(walker: Walker, told: RecognitionExplanation, begin: float) -> list[
 
 def _bands(walker: Walker, told: RecognitionExplanation) -> Iterator[Band]:
     """Yield the attributes that the chronicle speaks of, each once."""
+    streams = walker.streams_to(told.sample)
     wanted: dict[tuple[str, tuple[str, ...]], None] = {}
     for each in told.events:
         wanted[each.event.attribute, tuple(each.event.arguments)] = None
@@ -135,8 +141,8 @@ def _bands(walker: Walker, told: RecognitionExplanation) -> Iterator[Band]:
         )
         counted_here = tuple(c for c in told.counted if (attribute, arguments) in _keys_counted(c))
         yield Band(
-            steps=walker.attributes.steps(attribute, arguments),
-            raw=walker.attributes.raw_steps(attribute, arguments),
+            steps=walker.attributes.steps(attribute, arguments, streams),
+            raw=walker.attributes.raw_steps(attribute, arguments, streams),
             events=events,
             counted=counted_here,
             is_chronicle=walker.is_chronicle(attribute),

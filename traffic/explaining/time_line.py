@@ -1,6 +1,7 @@
 """Draws the time line: what held when, and at which instants the chronicle asked for it."""
 
 from collections.abc import Iterator, Mapping, Sequence
+from textwrap import fill
 
 from matplotlib.axes import Axes
 from matplotlib.colors import to_rgb
@@ -19,7 +20,10 @@ from traffic.explaining.drawing import (
 from traffic.explaining.explanation import Counted
 from traffic.explaining.story import Band, Story
 
-__all__ = ["draw_time_line"]
+__all__ = ["draw_time_line", "earlier_text"]
+
+_LETTERS = 38
+"""How many letters of a name stand on one line."""
 
 _BAR = 0.44
 _RAW = 0.12
@@ -43,7 +47,10 @@ def draw_time_line(axes: Axes, story: Story, colours: Mapping[str, str]) -> None
         _draw_values(axes, row, band, colour, story)
         _draw_events(axes, row, band)
     _draw_instants(axes, story)
-    axes.set_yticks(range(n), [band.name for band in story.bands], fontsize=9)
+    axes.set_yticks(range(n), [fill(band.name, _LETTERS) for band in story.bands], fontsize=9)
+    for frame in story.frames:
+        at = frame.time / 1000
+        axes.plot(at, n - 0.35, marker="^", ms=6, color=INK, clip_on=False, zorder=9)
     axes.tick_params(axis="y", length=0, pad=8)
     axes.xaxis.set_major_locator(MaxNLocator(nbins=12, steps=[1, 2, 5, 10]))
     axes.xaxis.set_major_formatter(FuncFormatter(lambda second, _: f"{second:g} s"))

@@ -22,6 +22,7 @@ from traffic.explaining.explanation import (
     Counted,
     EventExplanation,
     Explanation,
+    Provenance,
     RecognitionExplanation,
 )
 from traffic.explaining.frames import Frames
@@ -102,6 +103,13 @@ class Walker:
         """Return whether events of this name are recognitions."""
         return any(chronicle.name == name for _, _, chronicle in self.run.chronicles)
 
+    def streams_to(self, sample: Provenance | None) -> frozenset[str]:
+        """Return the streams of events that a recognition told in *sample* was made of.
+
+        Where that is not known, there are none, which stands for all.
+        """
+        return frozenset() if sample is None else self.run.roles.told_to(sample.stream)
+
     def match(self, recognition: Recognition) -> tuple[str, Match]:
         """Put a recognition beside its chronicle; return also the name of the file of that."""
         named = [each for each in self.run.chronicles if each[2].name == recognition.chronicle]
@@ -127,8 +135,10 @@ class Walker:
     ) -> RecognitionExplanation:
         file, match = self.match(recognition)
         found = self._told(recognition)
-        events = list(self._events(match, (*path, recognition)))
-        counted = list(self._counted(match))
+        sample = None if found is None else self.attributes.provenance(dict(found.row))
+        streams = self.streams_to(sample)
+        events = list(self._events(match, streams, (*path, recognition)))
+        counted = list(self._counted(match, streams))
         moments = _moments(match)
         symbols = self._symbols(match)
         own = {symbol: _moments_of(symbol, events, counted, moments) for symbol in symbols}
@@ -142,7 +152,7 @@ class Walker:
             begin=recognition.begin / MILLISECOND,
             end=recognition.end / MILLISECOND,
             recognised_at=recognition.recognised_at / MILLISECOND,
-            sample=None if found is None else self.attributes.provenance(dict(found.row)),
+            sample=sample,
             truth=None if result is None else result.truth,
             agrees=None if result is None else result.agrees,
             events=events,
@@ -164,9 +174,11 @@ class Walker:
                 return _Found(row, kept)
         return None
 
-    def _events(self, match: Match, path: tuple[Recognition, ...]) -> Iterator[EventExplanation]:
+    def _events(
+        self, match: Match, streams: frozenset[str], path: tuple[Recognition, ...]
+    ) -> Iterator[EventExplanation]:
         for event, predicates in match.predicates_met():
-            told = self.attributes.told(event)
+            told = self.attributes.told(event, streams)
             yield EventExplanation(
                 event=fact_of(event),
                 predicates=[match.text_with_values(each) for each in predicates],
@@ -174,7 +186,7 @@ class Walker:
                 sample=None if told is None else self.attributes.provenance(told),
                 change=None if told is None else self.attributes.change(event, told),
                 objects=self.objects.are_among(event.arguments),
-                near=self.attributes.near(event),
+                near=self.attributes.near(event, streams),
                 recognition=self._below(event, path),
             )
 
@@ -196,10 +208,10 @@ class Walker:
                 return number, result
         return None, None
 
-    def _counted(self, match: Match) -> Iterator[Counted]:
+    def _counted(self, match: Match, streams: frozenset[str]) -> Iterator[Counted]:
         for predicate in match.counters():
             name = predicate.event_type.name
-            told = [*self.attributes.events_of(name), *self._recognised(name)]
+            told = [*self.attributes.events_of(name, streams), *self._recognised(name)]
             yield match.counted(predicate, told)
 
     def _recognised(self, name: str) -> Iterator[Event]:
