@@ -7,16 +7,20 @@ from typing import Any
 import numpy as np
 
 from traffic.scenarios.acts import Act
+from traffic.scenarios.acts.crossings import CreepOverLine, HaltInCrossing, RunRedLight
 from traffic.scenarios.acts.driving import Drive, Halt
 from traffic.scenarios.acts.following import CloseUp, Column, Tail, Tailgate
 from traffic.scenarios.acts.parking import Park
 from traffic.scenarios.acts.weaving import Swerve, Weave
+from traffic.scenarios.acts.wrong_way import DriveOpposite
+from traffic.sumo.acts.crossings import creep_over_line, halt_in_crossing, run_red_light
 from traffic.sumo.acts.driving import drive, halt
 from traffic.sumo.acts.following import close_up, column, tail, tailgate
 from traffic.sumo.acts.parking import park
 from traffic.sumo.acts.performance import Performance, Script
 from traffic.sumo.acts.stage import Stage
 from traffic.sumo.acts.weaving import swerve, weave
+from traffic.sumo.acts.wrong_way import drive_opposite
 
 __all__ = ["Perform", "performance_of"]
 
@@ -44,4 +48,8 @@ _PERFORM: Mapping[type[Act], Perform] = {
     CloseUp: _script(close_up),
     Tail: _script(tail),
     Park: _script(park),
+    RunRedLight: _script(run_red_light),
+    CreepOverLine: _script(creep_over_line),
+    HaltInCrossing: _script(halt_in_crossing),
+    DriveOpposite: _script(drive_opposite),
 }
