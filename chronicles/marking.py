@@ -39,6 +39,8 @@ class RecognitionMarks:
     *arguments*. Recognitions about objects that are not known, any more or yet, are counted in
     `n_unknown`.
 
+    A table without objects may be without columns, and stays so.
+
     With *remember*, objects with a mark stay in the tables that come out until that time after
     they have left those that come in, as they were last. There is a column `present` then, which
     tells whether they are in the table; the column `observed` is left out, since nobody has to be
@@ -115,9 +117,11 @@ class RecognitionMarks:
         self._note_leaving(table)
         self._forget(time)
         recognised = np.array(sorted(self._mark(table)), dtype=np.int64)
+        everybody = self._with_present(table) if self._remember else table
+        if not len(everybody) and not table.columns:
+            return table
         if not self._remember:
             return self._with_marks(table, recognised)
-        everybody = self._with_present(table)
         columns = {n: c for n, c in everybody.columns.items() if n != "observed"}
         return self._with_marks(Table(table.sort, everybody.ids, columns), recognised)
 

@@ -45,14 +45,21 @@ class ChronicleRecogniser:
     Args:
         models: The chronicles.
         max_delay: How long after its valid time a sample may arrive.
+        limit: How many partial instances of each chronicle are kept; None for any number.
 
     Attributes:
         order: Puts the samples of the streams in order.
     """
 
-    def __init__(self, models: Iterable[Model], *, max_delay: Duration | None = None) -> None:
+    def __init__(
+        self,
+        models: Iterable[Model],
+        *,
+        max_delay: Duration | None = None,
+        limit: int | None = None,
+    ) -> None:
         self.order = InputOrder(max_delay)
-        self._recogniser = Recogniser(models)
+        self._recogniser = Recogniser(models, limit=limit)
         self._last_available = -1
         self._complete = BEGINNING_OF_TIME
 

@@ -85,9 +85,11 @@ class RecognitionSettings:
     Attributes:
         max_delay: How long after its valid time a sample of any stream may arrive; later ones
             are left out, and published as violations. None to go by what the streams promise.
+        limit: How many partial instances of each chronicle are kept; None for any number.
     """
 
     max_delay: Duration | None = None
+    limit: int | None = None
 
 
 class Registration:
@@ -108,7 +110,7 @@ class Registration:
         self.name = model.name
         self.label = f"{RECOGNITIONS}[{model.name}]"
         self.origins = tuple(origins)
-        self.unit = ChronicleRecogniser([model])
+        self.unit = ChronicleRecogniser([model], limit=settings.limit)
         self.max_delay: Duration | None = None
         self.settings = settings
         self.changes: list[_Changes] = []
@@ -298,8 +300,10 @@ class ChronicleReasoner:
         units.update((each.label, each.unit) for each in added)
         units.update((each.label, each.unit) for each in new)
         self._units = units
-        self.network.add(specification(*declarations))
-        self._units = {}
+        try:
+            self.network.add(specification(*declarations))
+        finally:
+            self._units = {}
         self._changes += new
         for registration in added:
             self._registered[registration.name] = registration

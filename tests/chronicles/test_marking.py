@@ -33,6 +33,8 @@ def _told(samples: Any) -> list[tuple[float, dict[int, tuple[Any, ...]]]]:
 
 
 def _rows(table: Table) -> dict[int, tuple[Any, ...]]:
+    if not table.columns:
+        return {}
     names = [*_COLUMNS, *(("present",) if "present" in table else ())]
     rows = zip(*(table[name].tolist() for name in names), strict=True)
     return dict(zip(table.ids.tolist(), rows, strict=True))
@@ -123,6 +125,18 @@ def test_objects_stay_as_they_were_for_as_long_as_they_are_remembered():
     back = _pushed(unit, 350, _cars(2, observed=[True], speed=[1.0]), None)[0][1]
     assert back == {2: (False, 1, 300_000_000, True), 1: (False, 1, 100_000_000, False)}
     assert list(_pushed(unit, 401, _cars(2, observed=[True], speed=[1.0]), None)[0][1]) == [2]
+
+
+def test_a_table_of_nothing_may_be_without_columns():
+    """Who makes tables may not know their columns before there is an object; nor do we."""
+    for remember in (0, 300):
+        unit = RecognitionMarks(
+            arguments="car", max_delay=Duration(0), remember=Duration(ms(remember))
+        )
+        (sample,) = unit.push(ms(0), (_sample(_cars(), 0), NO_SAMPLE))
+        assert not sample.value.columns
+        (sample,) = unit.push(ms(10), (_sample(_cars(1, speed=[2.0]), 10), NO_SAMPLE))
+        assert len(sample.value) == 1
 
 
 def test_something_must_be_named_to_be_marked():

@@ -398,6 +398,23 @@ def test_an_attribute_without_a_stream_is_a_fault_with_a_place(text, message):
     assert reasoner.chronicles == {}
 
 
+def test_a_limit_on_partial_instances_is_kept():
+    """Of two cars that are fast only the later one is followed."""
+    text = """
+    chronicle stop[?c] {
+        event(speed_class[?c]:(?, fast), t1)
+        event(speed_class[?c]:(fast, ?), t2)
+        t1 < t2 <= t1 + 1000
+    }
+    """
+    for limit, expected in ((None, 2), (1, 1)):
+        reasoner = speeds({0: "fast"}, {100: "fast"}, settings=RecognitionSettings(limit=limit))
+        reasoner.register(text)
+        reasoner.network.kernel.run()
+        unit = reasoner.chronicles["stop"].unit
+        assert len(unit.recogniser.partial_instances()) == expected
+
+
 def test_names_are_given_once_and_known():
     """One reasoner for each network; names of chronicles are their own."""
     reasoner = speeds({}, {})

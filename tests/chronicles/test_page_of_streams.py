@@ -1,0 +1,46 @@
+"""The page about chronicles in streams, docs/chronicles-in-streams.md: its examples run."""
+
+import re
+from pathlib import Path
+
+from dyknow.kpl.check import faults_of_text
+from dyknow.kpl.parser import parse_specification
+
+PAGE = Path("docs/chronicles-in-streams.md").read_text(encoding="utf-8")
+BUNDLED = Path("data/specifications/monitoring.kpl").read_text(encoding="utf-8")
+PRELUDE = """
+source cars cars
+source events link_turns
+strmgen cars = cars
+strmgen car_attributes = cars
+strmgen link_turns = link_turns
+"""
+
+
+def _blocks(language):
+    return re.findall(rf"^```{language}\n(.*?)^```$", PAGE, re.DOTALL | re.MULTILINE)
+
+
+def test_the_examples_of_the_page_say_what_the_page_says(capsys):
+    """The first one prints what stands below it, and declares what stands below that."""
+    scope = {}
+    first, second = _blocks("python")
+    exec(first, scope)
+
+    assert capsys.readouterr().out == _blocks("text")[0]
+    declared = scope["network"].specification.declarations[-6:]
+    assert parse_specification(_blocks("kpl")[0]).declarations == declared
+    exec(second, scope)
+    assert list(scope["reasoner"].chronicles) == ["race", "hurry"]
+
+
+def test_the_declarations_of_the_page_follow_the_language():
+    """Put together they make a specification without faults."""
+    _, *declared, _ = _blocks("kpl")
+    assert faults_of_text(PRELUDE + "".join(declared)) == []
+
+
+def test_the_link_of_the_page_is_the_one_of_the_application():
+    """Reckless drivers are declared as the page has it."""
+    (link,) = parse_specification(_blocks("kpl")[-1]).declarations
+    assert link in parse_specification(BUNDLED).declarations
