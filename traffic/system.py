@@ -63,6 +63,7 @@ from perception.processes import (
 from perception.scene import Ground, build_surroundings
 from traffic.bundled import data_folder
 from traffic.errors import RequestError
+from traffic.features.angular import AngularRelations
 from traffic.features.changes import Changes
 from traffic.features.following import Following
 from traffic.features.headways import Headways
@@ -77,6 +78,7 @@ from traffic.features.stability import StableFor
 from traffic.features.standing import Standing
 from traffic.features.stop_lines import StopLines
 from traffic.features.swaying import SWINGS, Swaying
+from traffic.features.unfiltered import UnfilteredCars
 from traffic.world import World
 
 __all__ = [
@@ -427,6 +429,8 @@ def _units(world: World, made: Made) -> dict[str, Any]:
         "StableFor": StableFor,
         "NearPairs": NearPairs,
         "CarRelations": CarRelations,
+        "UnfilteredCars": partial(UnfilteredCars, world.road_map),
+        "AngularRelations": AngularRelations,
         "Headways": partial(Headways, world.road_map),
         "Following": Following,
         "Swaying": Swaying,

@@ -4,5 +4,6 @@ Read in this order: `carrying` (state that follows objects from frame to frame),
 `stability`, `pairs`, `relations`, `headways` and `following` (who is next behind whom), `swaying`,
 `parking` (where cars stand), `standing`, `stop_lines`, `sides`, `changes` (from columns to
 events), `link_turns` (what the map says, as events), `positions` (percepts without a camera),
-`reckless` (who was a reckless driver, from when until when).
+`unfiltered` and `angular` (cars and their relations without filters, to compare with), `reckless`
+(who was a reckless driver, from when until when).
 """
