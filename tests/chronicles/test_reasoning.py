@@ -537,3 +537,68 @@ def key(recognition: Recognition) -> tuple[Any, ...]:
     """Return what makes a recognition the same as another."""
     event = event_from_recognition(recognition)
     return event.attribute, event.arguments, recognition.recognised_at, recognition.begin
+
+
+SWAP = """
+chronicle swap[?c, ?d] {
+    event(speed_class[?c]:(?, ?x), t1)
+    event(speed_class[?d]:(?x, ?), t2)
+    t1 <= t2 <= t1 + 30
+}
+"""
+
+
+@settings(derandomize=True, deadline=None, max_examples=60)
+@given(CHANGES, st.integers(0, 70), st.integers(0, 70), st.booleans())
+def test_late_and_withdrawn_chronicles_find_what_is_theirs(
+    drawn: list[tuple[str, int, int, str]], begins: int, lasts: int, has_company: bool
+) -> None:
+    """From the present values on, up to the end, whoever else looks at the streams."""
+    streams = {name: in_order(name, drawn) for name in ("class1", "class2")}
+    promise = " with max delay 8"
+    network = network_of(
+        f"""
+        source text class1
+        source text class2
+        strmgen speed_class[car1] = class1{promise}
+        strmgen speed_class[car2] = class2{promise}
+        stream first = speed_class[car1]
+        stream second = speed_class[car2]
+        """,
+        {name: list(samples) for name, samples in streams.items()},
+    )
+    reasoner = ChronicleReasoner(network)
+    if has_company:
+        reasoner.register(STARTS)
+    network.kernel.run(ms(begins))
+    reasoner.register(SWAP)
+    found: list[Recognition] = []
+    reasoner.subscribe("swap", lambda sample: found.extend(sample.value))
+    network.kernel.run(ms(begins + lasts))
+    reasoner.withdraw("swap")
+    network.kernel.run(ms(300))
+
+    expected = swaps(streams, begins)
+    told = [key(each) for each in found]
+    sure = [key(each) for each in expected if each.recognised_at + ms(8) <= ms(begins + lasts)]
+    assert len(set(told)) == len(told)
+    assert set(sure) <= set(told) <= {key(each) for each in expected}
+
+
+def swaps(streams: dict[str, list[Sample[str]]], begins: int) -> list[Recognition]:
+    """Return all swaps in what is new after some time, and in the values that there are then."""
+    events: list[Event] = []
+    for name, samples in streams.items():
+        before = [each for each in samples if each.available_time <= ms(begins)]
+        last = None
+        for sample in [*before[-1:], *samples[len(before) :]]:
+            if sample.value != last:
+                car = name.replace("class", "car")
+                events.append(Event("speed_class", (car,), last, sample.value, sample.valid_time))
+                last = sample.value
+    recogniser = Recogniser(models_from_chronicles(parse_chronicles(SWAP)))
+    return [
+        recognition
+        for time in sorted({event.time for event in events})
+        for recognition in recogniser.push(time, [each for each in events if each.time == time])
+    ]
