@@ -13,15 +13,20 @@ import numpy.typing as npt
 
 from dyknow.streams.process import Reactive
 from dyknow.streams.sample import Sample
-from dyknow.streams.table import Table
+from dyknow.streams.table import Table, positions_of
 from dyknow.time import SECOND, Duration, TimePoint
+from networks.geometry import group_ranges
 from traffic.features.carrying import CarriedColumns
+from traffic.features.pairs import pair_id
 
 __all__ = ["FOLLOWING", "Following"]
 
 FOLLOWING = ("follows", "tailgates")
 
 Truths = npt.NDArray[np.bool_]
+
+_DETOUR = 1.0
+"""Metres; a way over a third car that is longer by less is the same way."""
 
 _SLACK = 1.25
 """What keeps a relation true may be so much more than what makes it true."""
@@ -32,15 +37,16 @@ class Following(Reactive):
 
     One table comes out for each table of headways that goes in.
 
-    * `follows`: the second car is the next one ahead on the lane of the first, at a time gap of
-      at most *near*, and both are faster than *moving*;
+    * `follows`: the second car is the next one ahead on the lane of the first, which means that
+      nobody drives on the way between them, at a time gap of at most *near*, and both are faster
+      than *moving*;
     * `tailgates`: it is the next one ahead at a time gap of less than *close*, and the first car
       is faster than *fast*.
 
     A relation that is true stays so up to a time gap one and a quarter times as long, and down to
     speeds one and a quarter times lower. Time gaps and places in the lane count with
     *certainty* standard deviations against every change. Cars are in one lane if they are at
-    most *offset* aside.
+    most *offset* aside. Where ways part, a car may have a next one on each of them.
 
     Args:
         near: Time gap up to which a car follows.
@@ -104,12 +110,23 @@ class Following(Reactive):
             aside - margin <= _SLACK * self._offset,
         )
         (rows,) = np.nonzero(self._state["same_lane"])
-        is_next = np.zeros(len(headways), dtype=np.bool_)
-        if len(rows):
-            order = rows[np.lexsort((headways["ahead"][rows], headways["first"][rows]))]
-            first = headways["first"][order]
-            is_next[order[np.append(True, first[1:] != first[:-1])]] = True
+        is_next = self._state["same_lane"].copy()
+        is_next[rows] = ~_someone_between(headways.select(rows))
         return is_next
 
     def _hold(self, name: str, begins: Truths, stays: Truths) -> None:
         self._state[name] = begins | (self._state[name] & stays)
+
+
+def _someone_between(headways: Table) -> Truths:
+    """Return on the way between which cars a third one drives."""
+    first, second, ahead = headways["first"], headways["second"], headways["ahead"]
+    order = np.argsort(first, kind="stable")
+    begin, end = (np.searchsorted(first[order], second, side=side) for side in ("left", "right"))
+    near = np.repeat(np.arange(len(first)), end - begin)  # from the first car to one in between
+    far = order[group_ranges(begin, end - begin)]  # from there on
+    whole = positions_of(pair_id(first[near], second[far]), headways.ids)
+    on_way = (whole >= 0) & (ahead[near] + ahead[far] <= ahead[whole] + _DETOUR)
+    between = np.zeros(len(first), dtype=np.bool_)
+    between[whole[on_way]] = True
+    return between

@@ -1,6 +1,6 @@
 """Who truly tailgates, drives in a convoy, or is followed."""
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator
 from typing import NamedTuple, Self
 
 import numpy as np
@@ -26,6 +26,7 @@ CONVOY = Duration(20 * SECOND)
 _REACH = 90.0
 _HALF_LANE = 1.6
 _WIDTH_SHARE = 0.25
+_DETOUR = 1.0
 _NEAR = 2.5
 _CLOSE = 0.7
 _MOVING = 3.0
@@ -44,9 +45,10 @@ Three = tuple[int, int, int]
 class FollowingWatcher:
     """Measures the time gap between each vehicle and the next one ahead on its lane.
 
-    The next one ahead is the nearest to which the roads lead, through crossings too, and that is
-    at most 1.6 m aside; between roads of different widths, a quarter of the difference more. The
-    time gap is the gap between the bumpers, divided by the speed of the one behind.
+    The roads lead from the one to the other, through crossings too, within 90 m; it is at most
+    1.6 m aside (between roads of different widths, a quarter of the difference more); and nobody
+    else drives on the way between them. Where ways part there may be one on each of them. The time
+    gap is the gap between the bumpers, divided by the speed of the one behind.
 
     * `tailgating`, (who does it, the one ahead): the time gap is less than 0.7 s at more than
       8 m/s, for at least 4 s.
@@ -87,16 +89,14 @@ class FollowingWatcher:
         ]
 
     def _gaps(self, frame: Frame, places: TruePlaces) -> Iterator["_Gap"]:
-        """Yield the gap of each vehicle to the next one ahead."""
+        """Yield the gaps between vehicles and the next ones ahead."""
         vehicles = frame.vehicles
         first, second, distance = self._ahead.pairs(places.road, places.s)
         width = self._width[places.road]
         allowed = _HALF_LANE + _WIDTH_SHARE * np.abs(width[first] - width[second])
         in_lane = np.abs(places.d[first] - places.d[second]) <= allowed
         first, second, distance = first[in_lane], second[in_lane], distance[in_lane]
-        order = np.lexsort((distance, first))
-        _, nearest = np.unique(first[order], return_index=True)
-        rows = order[nearest]
+        rows = _next_ones(first.tolist(), second.tolist(), distance.tolist())
         behind, ahead = first[rows], second[rows]
         length, speed = vehicles["length"], vehicles["speed"]
         gap = distance[rows] - (length[behind] + length[ahead]) / 2
@@ -135,13 +135,31 @@ class _Gap(NamedTuple):
         return self.time_gap < slack * _CLOSE and slack * self.speed > _FAST
 
 
+def _next_ones(first: list[int], second: list[int], distance: list[float]) -> list[int]:
+    """Return the numbers of the pairs on whose way nobody else is."""
+    ahead_of: dict[int, dict[int, float]] = {}
+    for one, other, apart in zip(first, second, distance, strict=True):
+        ahead_of.setdefault(one, {})[other] = apart
+    return [
+        i
+        for i, (one, other, apart) in enumerate(zip(first, second, distance, strict=True))
+        if not any(
+            near + ahead_of.get(third, {}).get(other, np.inf) <= apart + _DETOUR
+            for third, near in ahead_of[one].items()
+        )
+    ]
+
+
 def _threes(follows: Iterable[Pair]) -> list[Three]:
     """Return first, second and third of all that follow one another."""
-    ahead_of: Mapping[int, int] = dict(sorted(follows))
+    behind: dict[int, list[int]] = {}
+    for one, ahead in sorted(follows):
+        behind.setdefault(ahead, []).append(one)
     return [
-        (ahead_of[second], second, third)
-        for third, second in ahead_of.items()
-        if second in ahead_of
+        (first, second, third)
+        for first, seconds in behind.items()
+        for second in seconds
+        for third in behind.get(second, ())
     ]
 
 

@@ -9,6 +9,7 @@ from dyknow.streams.sample import Sample
 from dyknow.streams.table import Table
 from dyknow.time import SECOND, Duration, TimePoint
 from traffic.features.following import FOLLOWING, Following
+from traffic.features.pairs import pair_id
 
 NEAR, CLOSE, MOVING, FAST, OFFSET, CERTAINTY = 2.5, 0.7, 3.0, 8.0, 1.6, 1.0
 SLACK = 1.25
@@ -45,8 +46,9 @@ def headway(first: int = 1, second: int = 2, **values: float) -> dict[str, float
 def table_of(pairs: list[dict[str, float]]) -> Table:
     """Return a table of pairs."""
     names = headway()
-    columns = {name: np.array([pair[name] for pair in pairs]) for name in names}
-    ids = [100 * int(pair["first"]) + int(pair["second"]) for pair in pairs]
+    columns = {name: np.array([pair[name] for pair in pairs], dtype=float) for name in names}
+    columns |= {name: columns[name].astype(np.int64) for name in ("first", "second")}
+    ids = pair_id(columns["first"], columns["second"])
     return Table("headway", ids, columns)
 
 
@@ -66,17 +68,27 @@ def after(*frames: list[dict[str, float]]) -> dict[tuple[int, int], set[str]]:
 
 
 def test_a_car_follows_the_next_one_only():
-    """Of two cars ahead on the lane the nearer one is followed."""
-    held = after([headway(1, 2), headway(1, 3, ahead=15.0, time_gap=0.9)])
+    """Of two cars ahead on one way the nearer one is followed."""
+    near, beyond = headway(1, 3, ahead=15.0, time_gap=0.9), headway(3, 2, ahead=14.0)
 
-    assert held == {(1, 2): set(), (1, 3): {"follows"}}
+    assert after([headway(1, 2), near, beyond])[1, 2] == set()
+    assert after([headway(1, 2), near, beyond])[1, 3] == {"follows"}
+
+
+def test_a_car_on_another_way_is_not_between():
+    """Where ways part, the nearest on each is the next; a detour is another way."""
+    near, detour = headway(1, 3, ahead=15.0), headway(3, 2, ahead=20.0)
+
+    assert after([headway(1, 2), near])[1, 2] == {"follows"}
+    assert after([headway(1, 2), near, detour])[1, 2] == {"follows"}
 
 
 def test_a_car_on_the_lane_beside_is_not_followed():
     """Who is aside by a lane is passed over, and the next one behind it is followed."""
-    held = after([headway(1, 2, aside=3.2, ahead=15.0), headway(1, 3)])
+    beside = headway(1, 2, aside=3.2, ahead=15.0)
+    held = after([beside, headway(2, 3, aside=3.2, ahead=14.0), headway(1, 3)])
 
-    assert held == {(1, 2): set(), (1, 3): {"follows"}}
+    assert held == {(1, 2): set(), (2, 3): set(), (1, 3): {"follows"}}
 
 
 def test_who_drives_closely_and_fast_tailgates():
@@ -122,7 +134,7 @@ def frames_of_pairs(draw):
                 headway(
                     i,
                     j,
-                    ahead=draw(st.integers(1, 9)) * 8.0 + j / 10,
+                    ahead=draw(st.integers(1, 5)) * 8.0,
                     time_gap=draw(st.sampled_from([0.3, 0.65, 0.75, 0.95, 2.4, 2.8, 3.3])),
                     deviation=draw(st.sampled_from([0.0, 0.1])),
                     aside=draw(st.sampled_from([0.0, 1.5, 1.8, 3.2])),
@@ -136,6 +148,17 @@ def frames_of_pairs(draw):
     return frames
 
 
+def someone_between(key, by_pair, now):
+    """Tell whether there is a third car, in lane, on the way from the one to the other."""
+    for third in range(1, 5):
+        near, far = (key[0], third), (third, key[1])
+        if all(pair in by_pair and "lane" in now[pair] for pair in (near, far)):
+            detour = by_pair[near]["ahead"] + by_pair[far]["ahead"] - by_pair[key]["ahead"]
+            if detour <= 1.0:
+                return True
+    return False
+
+
 def naive(frames):
     """Return what holds at the end, pair by pair."""
     before: dict[tuple[int, int], set[str]] = {}
@@ -147,10 +170,7 @@ def naive(frames):
             stays = "lane" in before.get(key, ()) and p["aside"] - spread <= SLACK * OFFSET
             now[key] = {"lane"} if p["aside"] + spread <= OFFSET or stays else set()
         for key, p in by_pair.items():
-            rivals = [
-                q["ahead"] for k, q in by_pair.items() if k[0] == key[0] and "lane" in now[k]
-            ]
-            if "lane" not in now[key] or p["ahead"] > min(rivals):
+            if "lane" not in now[key] or someone_between(key, by_pair, now):
                 continue
             for name, limit, speed, least in (
                 ("follows", NEAR, min(p["speed"], p["speed_of_second"]), MOVING),
