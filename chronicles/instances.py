@@ -147,6 +147,11 @@ class Stage:
             self._indexes[variables] = {}, projection(self.variables, variables)
         return self._indexes[variables][0]
 
+    @property
+    def is_empty(self) -> bool:
+        """Whether there are no instances."""
+        return not any(index for index, _ in self.entries)
+
     def members(self) -> Iterator[Instance]:
         """Yield the instances."""
         for index, _ in self._indexes.values():

@@ -25,6 +25,8 @@ from chronicles.writing import Limits, Recipe, Source, written_beginning, writte
 
 __all__ = ["Joiner"]
 
+_LEAST_TO_SWEEP = 256
+
 _Find = Callable[[int, Values], Iterable[Instance]]
 
 
@@ -32,7 +34,7 @@ class Joiner:
     """The stages of one chronicle and the recipes that lead from one to another.
 
     Stages are made when the first instance gets there: of the many sets of slots that can be
-    filled, few ever are.
+    filled, few ever are. Those that have become empty can be forgotten.
 
     Args:
         model: The chronicle.
@@ -46,45 +48,70 @@ class Joiner:
     def __init__(self, model: Model, prepare: Callable[[Stage], None]) -> None:
         self._model = model
         self._prepare = prepare
+        self._everything = (1 << len(model.slots)) - 1
+        self._later_than = [_places(limit < 0 for limit in limits) for limits in model.limits]
         self._combinations: list[list[tuple[Stage, ...]]] = [[()] for _ in model.slots]
+        self._most = _LEAST_TO_SWEEP
         self.stages: dict[int, Stage] = {}
         self.recipes: list[list[Recipe]] = [[] for _ in model.slots]
-        for slot in model.slots:
-            if self._is_possible(1 << slot.index, slot.neighbours):
-                self.recipes[slot.index].append(self._begin_first(slot))
+        self._add_beginnings()
+
+    @property
+    def is_crowded(self) -> bool:
+        """Whether there may be many stages without instances."""
+        return len(self.stages) > self._most
+
+    def forget_empty_stages(self) -> None:
+        """Forget the stages without instances; no event may be on its way through the recipes."""
+        kept = [stage for stage in self.stages.values() if not stage.is_empty]
+        self.stages = {stage.mask: stage for stage in kept}
+        self._most = max(_LEAST_TO_SWEEP, 2 * len(kept))
+        self._combinations = [[()] for _ in self._model.slots]
+        for recipes in self.recipes:
+            recipes.clear()
+        self._add_beginnings()
+        for stage in kept:
+            self._add_recipes(stage)
 
     def _stage(self, mask: int) -> Stage:
         stage = self.stages.get(mask)
         if stage is None:
             stage = self.stages[mask] = Stage(self._model, mask)
             for i in stage.awaited:
-                self._add_recipes(self._model.slots[i], stage)
+                stage.index_by(_shared(self._model.slots[i], stage))
             stage.seal()
             self._prepare(stage)
+            self._add_recipes(stage)
         return stage
 
-    def _add_recipes(self, slot: Slot, stage: Stage) -> None:
-        stage.index_by(_shared(slot, stage))
-        combinations = self._combinations[slot.index]
-        for others in list(combinations):
-            if any(other.mask & (stage.mask | stage.near) for other in others):
-                continue
-            joined = (*others, stage)
-            combinations.append(joined)
-            mask = 1 << slot.index
-            near = slot.neighbours
-            for part in joined:
-                mask |= part.mask
-                near |= part.near
-            if self._is_possible(mask, near):
-                self.recipes[slot.index].append(self._joining(slot, joined))
+    def _add_beginnings(self) -> None:
+        for slot in self._model.slots:
+            if not self._later_than[slot.index] & slot.neighbours:
+                self.recipes[slot.index].append(self._begin_first(slot))
 
-    def _is_possible(self, mask: int, near: int) -> bool:
-        """Return whether the open slots next to *mask* can be filled later than all of it."""
-        slots = range(len(self._model.slots))
-        filled = [i for i in slots if mask & 1 << i]
-        awaited = [i for i in slots if near & ~mask & 1 << i]
-        return all(self._model.limits[i][j] >= 0 for i in filled for j in awaited)
+    def _add_recipes(self, stage: Stage) -> None:
+        """Make recipes of *stage*, alone and together with others it has nothing to do with."""
+        is_connected = stage.mask | stage.near == self._everything
+        for i in stage.awaited:
+            combinations = self._combinations[i]
+            for others in [()] if is_connected else list(combinations):
+                if any(other.mask & (stage.mask | stage.near) for other in others):
+                    continue
+                joined = (*others, stage)
+                if not is_connected:
+                    combinations.append(joined)
+                if self._is_possible(self._model.slots[i], joined):
+                    self.recipes[i].append(self._joining(self._model.slots[i], joined))
+
+    def _is_possible(self, slot: Slot, parts: tuple[Stage, ...]) -> bool:
+        """Return whether the open slots next to some parts and *slot* can be filled later."""
+        mask, near, later_than = 1 << slot.index, slot.neighbours, self._later_than[slot.index]
+        for part in parts:
+            mask |= part.mask
+            near |= part.near
+            for i in part.filled:
+                later_than |= self._later_than[i]
+        return not near & ~mask & later_than
 
     def _begin_first(self, slot: Slot) -> Recipe:
         """Return what writes the recipe for an event that joins nothing, when there is one."""
@@ -239,6 +266,11 @@ class Joiner:
         if not tests:
             return None
         return lambda values: all(allows(pick(values)) for pick, allows in tests)
+
+
+def _places(truths: Iterable[bool]) -> int:
+    """Return at which places the truths are, as a set of bits."""
+    return sum(1 << i for i, truth in enumerate(truths) if truth)
 
 
 def _shared(slot: Slot, stage: Stage) -> tuple[str, ...]:

@@ -37,13 +37,13 @@ class Listener:
         on_match: Called with each match and the time from when on nothing could take it back.
         on_end: Called with each instance that can no longer become complete, and why.
         limit: How many instances are kept of one chronicle; None for any number.
-        on_excess: Called when there are more than that.
+        on_excess: Called when there are more than that, or many stages: it is time to tidy up.
     """
 
     on_match: "Callable[[Matcher, Instance, int], None]"
-    on_end: "Callable[[Matcher, Instance, str], None] | None" = None
-    limit: int | None = None
-    on_excess: "Callable[[Matcher], None] | None" = None
+    on_end: "Callable[[Matcher, Instance, str], None] | None"
+    limit: int | None
+    on_excess: "Callable[[Matcher], None]"
 
 
 class Matcher:
@@ -98,8 +98,21 @@ class Matcher:
                     earliest = min(earliest, instance.times[slot] + offset)
         return earliest
 
-    def keep_to_limit(self) -> int:
-        """Give up the oldest instances if there are more than the limit; return how many."""
+    def tidy(self) -> int:
+        """Give up the oldest instances if there are more than the limit; return how many.
+
+        Forgets stages without instances too. No event may be on its way through the handlers.
+        """
+        n = self._keep_to_limit()
+        if self._joiner.is_crowded:
+            self._joiner.forget_empty_stages()
+            for notices in self._notices.values():
+                notices.clear()
+            for stage in self._joiner.stages.values():
+                self._add_notices(stage)
+        return n
+
+    def _keep_to_limit(self) -> int:
         limit = self._listener.limit
         if limit is None or self._n_instances <= limit:
             return 0
@@ -124,8 +137,9 @@ class Matcher:
 
     def _prepare(self, stage: Stage) -> None:
         """Make a new stage ready for instances."""
-        for watch in stage.watches:
-            self._notices[watch.counter].append(self._noticing(stage, watch))
+        self._add_notices(stage)
+        if self._joiner.is_crowded:
+            self._listener.on_excess(self)
         if stage.is_complete:
             stage.admit, stage.review = self._completion(), self._judge
             return
@@ -133,6 +147,10 @@ class Matcher:
         looks_back = any(watch.counter.looks_back for watch in stage.watches)
         if self._listener.limit is None and not looks_back:
             stage.schedule = self._agenda.schedule
+
+    def _add_notices(self, stage: Stage) -> None:
+        for watch in stage.watches:
+            self._notices[watch.counter].append(self._noticing(stage, watch))
 
     def _admission(self, stage: Stage) -> Callable[[Instance, int], None]:
         """Return what takes in a new instance, unless it is dead already."""
@@ -209,9 +227,9 @@ class Matcher:
     def _add(self, instance: Instance) -> None:
         instance.stage.add(instance)
         self._n_instances += 1
-        limit, on_excess = self._listener.limit, self._listener.on_excess
-        if limit is not None and on_excess is not None and self._n_instances > limit:
-            on_excess(self)
+        limit = self._listener.limit
+        if limit is not None and self._n_instances > limit:
+            self._listener.on_excess(self)
 
     def _end(self, instance: Instance, reason: str) -> None:
         """Remove an instance that can no longer become complete."""

@@ -20,6 +20,7 @@ leave open:
 import logging
 from collections.abc import Callable, Iterable, Mapping
 from graphlib import CycleError, TopologicalSorter
+from itertools import count
 from typing import cast
 
 from chronicles.constraints import INSTANT
@@ -30,7 +31,7 @@ from chronicles.models import Model
 from chronicles.patterns import Values, projection
 from chronicles.prospects import EndedInstance, PartialInstance, partial_instance
 from chronicles.reporting import NonOverlapping
-from chronicles.routing import route
+from chronicles.routing import Routes, route
 from dyknow.source_text import nearest_name
 from dyknow.time import TimePoint
 
@@ -40,9 +41,6 @@ _logger = logging.getLogger(__name__)
 
 _Found = tuple[int, int, Matcher, Instance]
 """When it was recognised, the place of its chronicle, its matcher, and the match."""
-
-_Uses = dict[Matcher, frozenset[str]]
-"""The names of the events that each chronicle asks for."""
 
 
 class Recogniser:
@@ -76,9 +74,11 @@ class Recogniser:
         self._agenda = Agenda()
         self._found: list[_Found] = []
         self._seen: set[tuple[str, Values, str | None, str | None]] = set()
-        self._too_many: dict[Matcher, None] = {}
-        self._matchers: list[Matcher] = []
-        self._uses: _Uses = {}
+        self._untidy: dict[Matcher, None] = {}
+        self._matchers: dict[str, Matcher] = {}
+        self._place: dict[Matcher, int] = {}
+        self._used: set[str] = set()
+        self._routes: Routes | None = None
         self._level: dict[Matcher, int] = {}
         self._makers: dict[Matcher, Callable[[Instance, int], Recognition]] = {}
         self._reports: dict[Matcher, NonOverlapping] = {}
@@ -93,7 +93,7 @@ class Recogniser:
     @property
     def attributes(self) -> frozenset[str]:
         """The names of the attributes and messages that any chronicle uses."""
-        return frozenset(self._routes)
+        return frozenset(self._used)
 
     @property
     def n_given_up(self) -> dict[str, int]:
@@ -107,19 +107,28 @@ class Recogniser:
             ValueError: A chronicle of this name is recognised already, or the chronicles would
                 be made of themselves; none of the models is registered then.
         """
-        added = [Matcher(model, self._agenda, self._listener) for model in models]
-        matchers = {matcher.model.name: matcher for matcher in self._matchers}
-        for matcher in added:
-            if matchers.setdefault(matcher.model.name, matcher) is not matcher:
-                raise ValueError(f"chronicle '{matcher.model.name}' is recognised already")
-        uses = {**self._uses, **{matcher: _names_used(matcher) for matcher in added}}
-        if _are_made_of_others(added, uses, matchers):
-            level = _levels(uses, matchers)
+        added = {}
+        for model in models:
+            if model.name in self._matchers or model.name in added:
+                raise ValueError(f"chronicle '{model.name}' is recognised already")
+            added[model.name] = Matcher(model, self._agenda, self._listener)
+        uses = {matcher: _names_used(matcher) for matcher in added.values()}
+        used = frozenset().union(*uses.values())
+        is_simple = not any(name in self._matchers or name in added for name in used)
+        if is_simple and not any(name in self._used for name in added):
+            level = dict.fromkeys(uses, 0)
         else:
-            level = {**self._level, **dict.fromkeys(added, 0)}
-        for matcher in added:
-            self._prepare(matcher)
-        self._set_matchers(list(matchers.values()), uses, level)
+            level = _levels({**self._uses(), **uses}, {**self._matchers, **added})
+        self._used |= used
+        self._level.update(level)
+        self._matchers.update(added)
+        self._makers.update((matcher, _maker(matcher.model)) for matcher in uses)
+        self._place.update(zip(uses, count(len(self._place)), strict=False))
+        for matcher in uses:
+            if matcher.model.counted_interval is not None:
+                interval = matcher.model.counted_interval
+                self._reports[matcher] = NonOverlapping(matcher, interval)
+        self._routes = None
 
     def withdraw(self, name: str) -> None:
         """Stop recognising a chronicle and forget its partial instances.
@@ -127,19 +136,17 @@ class Recogniser:
         Raises:
             ValueError: No chronicle of this name is recognised.
         """
-        gone = [matcher for matcher in self._matchers if matcher.model.name == name]
-        if not gone:
-            known = [matcher.model.name for matcher in self._matchers]
-            nearest = nearest_name(name, known)
+        matcher = self._matchers.pop(name, None)
+        if matcher is None:
+            nearest = nearest_name(name, self._matchers)
             hint = f"; did you mean '{nearest}'?" if nearest else ""
             raise ValueError(f"no chronicle called '{name}' is recognised{hint}")
-        for matcher in gone:
-            matcher.clear()
-            self._makers.pop(matcher)
-            self._reports.pop(matcher, None)
-        matchers = [matcher for matcher in self._matchers if matcher not in gone]
-        uses = {matcher: self._uses[matcher] for matcher in matchers}
-        self._set_matchers(matchers, uses, self._level)
+        matcher.clear()
+        self._used = set().union(*self._uses().values())
+        for known in (self._makers, self._level, self._reports, self._untidy):
+            known.pop(matcher, None)
+        self._place = {matcher: i for i, matcher in enumerate(self._matchers.values())}
+        self._routes = None
 
     def push(self, time: TimePoint, events: Iterable[Event]) -> list[Recognition]:
         """Take in *events* that happened at *time* and return what is recognised by then.
@@ -179,32 +186,30 @@ class Recogniser:
         clock = self._clock or 0
         return [
             partial_instance(matcher.model, instance, clock)
-            for matcher in self._matchers
+            for matcher in self._matchers.values()
             for instance in matcher.instances()
         ]
 
     def size(self) -> int:
         """Return how many instances, deadlines, counted events and reports are kept."""
-        n_instances = sum(sum(1 for _ in matcher.instances()) for matcher in self._matchers)
-        n_counted = sum(matcher.n_counted() for matcher in self._matchers)
+        n_instances = sum(
+            sum(1 for _ in matcher.instances()) for matcher in self._matchers.values()
+        )
+        n_counted = sum(matcher.n_counted() for matcher in self._matchers.values())
         n_reports = sum(len(report) for report in self._reports.values())
         return n_instances + n_counted + n_reports + len(self._agenda)
 
-    def _prepare(self, matcher: Matcher) -> None:
-        """Connect a matcher that is new."""
-        self._makers[matcher] = _maker(matcher.model)
-        if matcher.model.counted_interval is not None:
-            self._reports[matcher] = NonOverlapping(matcher, matcher.model.counted_interval)
+    def _uses(self) -> dict[Matcher, frozenset[str]]:
+        return {matcher: _names_used(matcher) for matcher in self._matchers.values()}
 
-    def _set_matchers(
-        self, matchers: list[Matcher], uses: _Uses, level: dict[Matcher, int]
-    ) -> None:
-        self._matchers, self._uses, self._level = matchers, uses, level
-        self._place = {matcher: i for i, matcher in enumerate(matchers)}
-        self._routes = route(matchers)
+    def _route(self) -> Routes:
+        """Return where events go; it is found out when the first comes after a change."""
+        if self._routes is None:
+            self._routes = route(self._matchers.values())
+        return self._routes
 
     def _handle(self, events: Iterable[Event], now: int) -> None:
-        seen, routes = self._seen, self._routes
+        seen, routes = self._seen, self._routes or self._route()
         for event in events:
             to_value = event.to_value
             by_value = routes.get(event.attribute)
@@ -217,15 +222,15 @@ class Recogniser:
                     seen.add(fact)
                     for handle in handlers:
                         handle(event, now)
-        if self._too_many:
-            self._keep_to_limit()
+        if self._untidy:
+            self._tidy()
 
-    def _keep_to_limit(self) -> None:
-        for matcher in self._too_many:
-            n = matcher.keep_to_limit()
+    def _tidy(self) -> None:
+        for matcher in self._untidy:
+            n = matcher.tidy()
             if n:
                 self._note_given_up(matcher, n)
-        self._too_many.clear()
+        self._untidy.clear()
 
     def _work_off(self, now: int, recognised: list[Recognition]) -> None:
         """Let time pass until *now*; what is recognised on the way counts at its own time."""
@@ -243,7 +248,7 @@ class Recogniser:
         self._found.append((recognised_at, self._place[matcher], matcher, instance))
 
     def _note_excess(self, matcher: Matcher) -> None:
-        self._too_many[matcher] = None
+        self._untidy[matcher] = None
 
     def _note_end(self, matcher: Matcher, instance: Instance, reason: str) -> None:
         assert self._on_end is not None
@@ -277,7 +282,7 @@ class Recogniser:
                 if report is None or report.admits(recognition, instance.times, now):
                     new.append(recognition)
             recognised += new
-            used = [one for one in new if one.chronicle in self._routes]
+            used = [one for one in new if one.chronicle in self._used]
             if used:
                 self._handle(map(event_from_recognition, used), now)
 
@@ -287,15 +292,9 @@ def _names_used(matcher: Matcher) -> frozenset[str]:
     return frozenset(pattern.event_type.name for pattern in patterns)
 
 
-def _are_made_of_others(
-    added: Iterable[Matcher], uses: _Uses, matchers: Mapping[str, Matcher]
-) -> bool:
-    """Return whether one of the chronicles *added* is made of others, or others of it."""
-    used = frozenset().union(*uses.values())
-    return any(m.model.name in used or uses[m] & matchers.keys() for m in added)
-
-
-def _levels(uses: _Uses, matchers: Mapping[str, Matcher]) -> dict[Matcher, int]:
+def _levels(
+    uses: Mapping[Matcher, frozenset[str]], matchers: Mapping[str, Matcher]
+) -> dict[Matcher, int]:
     """Return how deep each chronicle is made of other chronicles.
 
     Raises:
