@@ -22,9 +22,10 @@ Rows = npt.NDArray[np.intp]
 _SLOWEST = 0.1
 """Speed in m/s below which a time gap is that of a car at this speed."""
 
-_WIDTH_SHARE = 0.25
-"""How much farther aside, in differences of width, who is in the same lane can be on a road of
-another width: its centre line is that of other lanes."""
+_PLAY = 0.8
+"""Metres farther aside that who is in the same lane can be where roads narrow or widen, and inside
+crossings: there the middle of a road leads from the middle of one to that of another, and lanes
+need not be as far beside it as before."""
 
 
 class Headways(Reactive):
@@ -57,6 +58,7 @@ class Headways(Reactive):
             raise ValueError(f"expected a reach of more than 0 m, found {reach}")
         self._ahead = RoadsAhead(roads, reach, undecided=True)
         self._width = np.asarray(roads.road_width, dtype=np.float64)
+        self._in_crossing = roads.crossing_of_road >= 0
         self._active_for = active_for
 
     def push(self, now: TimePoint, inputs: tuple[Sample[Any], ...]) -> Iterable[Sample[Table]]:
@@ -85,10 +87,10 @@ class Headways(Reactive):
         return Table("headway", pair_id(cars.ids[first], cars.ids[second]), columns)
 
     def _aside(self, cars: Table, first: Rows, second: Rows) -> Floats:
-        width = self._width[cars["road"]]
+        width, in_crossing = self._width[cars["road"]], self._in_crossing[cars["road"]]
         apart = np.abs(cars["d"][first] - cars["d"][second])
-        allowed = _WIDTH_SHARE * np.abs(width[first] - width[second])
-        aside: Floats = np.maximum(apart - allowed, 0.0)
+        loose = in_crossing[first] | in_crossing[second] | (width[first] != width[second])
+        aside: Floats = np.maximum(apart - np.where(loose, _PLAY, 0.0), 0.0)
         return aside
 
 

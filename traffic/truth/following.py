@@ -25,7 +25,7 @@ CONVOY = Duration(20 * SECOND)
 
 _REACH = 90.0
 _HALF_LANE = 1.6
-_WIDTH_SHARE = 0.25
+_PLAY = 0.8
 _DETOUR = 1.0
 _NEAR = 2.5
 _CLOSE = 0.7
@@ -46,9 +46,10 @@ class FollowingWatcher:
     """Measures the time gap between each vehicle and the next one ahead on its lane.
 
     The roads lead from the one to the other, through crossings too, within 90 m; it is at most
-    1.6 m aside (between roads of different widths, a quarter of the difference more); and nobody
-    else drives on the way between them. Where ways part there may be one on each of them. The time
-    gap is the gap between the bumpers, divided by the speed of the one behind.
+    1.6 m aside (0.8 m more inside crossings and between roads of different widths, where lanes
+    shift); and nobody else drives on the way between them. Where ways part there may be one on
+    each of them. The time gap is the gap between the bumpers, divided by the speed of the one
+    behind.
 
     * `tailgating`, (who does it, the one ahead): the time gap is less than 0.7 s at more than
       8 m/s, for at least 4 s.
@@ -66,6 +67,7 @@ class FollowingWatcher:
     def __init__(self, road_map: RoadMap) -> None:
         self._ahead = RoadsAhead(road_map, _REACH)
         self._width = np.asarray(road_map.road_width, dtype=np.float64)
+        self._in_crossing = road_map.crossing_of_road >= 0
         self._follows: Stretches[Pair] = Stretches()
         self._tailgates: Stretches[Pair] = Stretches()
         self._convoys: Stretches[Three] = Stretches()
@@ -92,8 +94,9 @@ class FollowingWatcher:
         """Yield the gaps between vehicles and the next ones ahead."""
         vehicles = frame.vehicles
         first, second, distance = self._ahead.pairs(places.road, places.s)
-        width = self._width[places.road]
-        allowed = _HALF_LANE + _WIDTH_SHARE * np.abs(width[first] - width[second])
+        width, in_crossing = self._width[places.road], self._in_crossing[places.road]
+        loose = in_crossing[first] | in_crossing[second] | (width[first] != width[second])
+        allowed = _HALF_LANE + np.where(loose, _PLAY, 0.0)
         in_lane = np.abs(places.d[first] - places.d[second]) <= allowed
         first, second, distance = first[in_lane], second[in_lane], distance[in_lane]
         rows = _next_ones(first.tolist(), second.tolist(), distance.tolist())
