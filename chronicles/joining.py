@@ -12,7 +12,8 @@ a function that knows the index to look into, the limits to test, and the places
 """
 
 from collections.abc import Callable, Iterable, Sequence
-from functools import reduce
+from dataclasses import dataclass
+from functools import lru_cache, reduce
 from itertools import product
 from operator import or_
 
@@ -28,6 +29,36 @@ __all__ = ["Joiner"]
 _LEAST_TO_SWEEP = 256
 
 _Find = Callable[[int, Values], Iterable[Instance]]
+
+
+@dataclass(frozen=True, slots=True)
+class _Parts:
+    """Stages that have nothing to do with each other.
+
+    Attributes:
+        parts: The stages.
+        mask: The slots that they have filled, as a set of bits.
+        near: The slots next to these.
+        later_than: The slots that must be filled before one of these.
+    """
+
+    parts: tuple[Stage, ...]
+    mask: int
+    near: int
+    later_than: int
+
+    def fits(self, stage: Stage) -> bool:
+        """Return whether *stage* has nothing to do with any of them."""
+        return not self.mask & (stage.mask | stage.near)
+
+    def joined(self, other: "_Parts") -> "_Parts":
+        """Return both together."""
+        return _Parts(
+            self.parts + other.parts,
+            self.mask | other.mask,
+            self.near | other.near,
+            self.later_than | other.later_than,
+        )
 
 
 class Joiner:
@@ -50,7 +81,7 @@ class Joiner:
         self._prepare = prepare
         self._everything = (1 << len(model.slots)) - 1
         self._later_than = [_places(limit < 0 for limit in limits) for limits in model.limits]
-        self._combinations: list[list[tuple[Stage, ...]]] = [[()] for _ in model.slots]
+        self._combinations: list[list[_Parts]] = []
         self._most = _LEAST_TO_SWEEP
         self.stages: dict[int, Stage] = {}
         self.recipes: list[list[Recipe]] = [[] for _ in model.slots]
@@ -66,7 +97,6 @@ class Joiner:
         kept = [stage for stage in self.stages.values() if not stage.is_empty]
         self.stages = {stage.mask: stage for stage in kept}
         self._most = max(_LEAST_TO_SWEEP, 2 * len(kept))
-        self._combinations = [[()] for _ in self._model.slots]
         for recipes in self.recipes:
             recipes.clear()
         self._add_beginnings()
@@ -78,40 +108,41 @@ class Joiner:
         if stage is None:
             stage = self.stages[mask] = Stage(self._model, mask)
             for i in stage.awaited:
-                stage.index_by(_shared(self._model.slots[i], stage))
+                stage.index_by(_link(self._model.slots[i].pattern.variables, stage.variables)[0])
             stage.seal()
             self._prepare(stage)
             self._add_recipes(stage)
         return stage
 
     def _add_beginnings(self) -> None:
+        nothing = _Parts((), 0, 0, 0)
+        self._combinations = [[nothing] for _ in self._model.slots]
         for slot in self._model.slots:
-            if not self._later_than[slot.index] & slot.neighbours:
+            if self._is_possible(slot, nothing):
                 self.recipes[slot.index].append(self._begin_first(slot))
 
     def _add_recipes(self, stage: Stage) -> None:
         """Make recipes of *stage*, alone and together with others it has nothing to do with."""
+        later_than = reduce(or_, (self._later_than[i] for i in stage.filled))
+        alone = _Parts((stage,), stage.mask, stage.near, later_than)
         is_connected = stage.mask | stage.near == self._everything
         for i in stage.awaited:
-            combinations = self._combinations[i]
-            for others in [()] if is_connected else list(combinations):
-                if any(other.mask & (stage.mask | stage.near) for other in others):
-                    continue
-                joined = (*others, stage)
-                if not is_connected:
-                    combinations.append(joined)
-                if self._is_possible(self._model.slots[i], joined):
-                    self.recipes[i].append(self._joining(self._model.slots[i], joined))
+            slot, combinations = self._model.slots[i], self._combinations[i]
+            found = (
+                [alone]
+                if is_connected
+                else [p.joined(alone) for p in combinations if p.fits(stage)]
+            )
+            if not is_connected:
+                combinations += found
+            self.recipes[i] += [
+                self._joining(slot, each.parts) for each in found if self._is_possible(slot, each)
+            ]
 
-    def _is_possible(self, slot: Slot, parts: tuple[Stage, ...]) -> bool:
+    def _is_possible(self, slot: Slot, parts: "_Parts") -> bool:
         """Return whether the open slots next to some parts and *slot* can be filled later."""
-        mask, near, later_than = 1 << slot.index, slot.neighbours, self._later_than[slot.index]
-        for part in parts:
-            mask |= part.mask
-            near |= part.near
-            for i in part.filled:
-                later_than |= self._later_than[i]
-        return not near & ~mask & later_than
+        mask, near = parts.mask | 1 << slot.index, parts.near | slot.neighbours
+        return not near & ~mask & (parts.later_than | self._later_than[slot.index])
 
     def _begin_first(self, slot: Slot) -> Recipe:
         """Return what writes the recipe for an event that joins nothing, when there is one."""
@@ -169,9 +200,8 @@ class Joiner:
         It is written when an event first finds an instance, so that nothing is made of the many
         steps that no instance ever takes.
         """
-        shared = _shared(slot, part)
+        shared, key = _link(slot.pattern.variables, part.variables)
         index = part.index_by(shared)
-        key = projection(slot.pattern.variables, shared)
         mask = part.mask | 1 << slot.index
         recipes = self.recipes[slot.index]
 
@@ -201,9 +231,8 @@ class Joiner:
     def _finder(self, slot: Slot, part: Stage) -> _Find:
         """Return a function that finds the instances of *part* that an event fits to."""
         at = slot.index
-        shared = _shared(slot, part)
+        shared, key = _link(slot.pattern.variables, part.variables)
         index = part.index_by(shared)
-        key = projection(slot.pattern.variables, shared)
         pauses = self._pauses(slot, part)
 
         def find(now: int, values: Values) -> Iterable[Instance]:
@@ -273,8 +302,16 @@ def _places(truths: Iterable[bool]) -> int:
     return sum(1 << i for i, truth in enumerate(truths) if truth)
 
 
-def _shared(slot: Slot, stage: Stage) -> tuple[str, ...]:
-    return tuple(v for v in slot.pattern.variables if v in stage.variables)
+@lru_cache(maxsize=4096)
+def _link(
+    asked: tuple[str, ...], known: tuple[str, ...]
+) -> tuple[tuple[str, ...], Callable[[Values], Values] | None]:
+    """Return the variables of an event that are known, and what finds their values.
+
+    There is nothing to find if that is all of them.
+    """
+    shared = tuple(name for name in asked if name in known)
+    return shared, projection(asked, shared)
 
 
 def _same(values: Values) -> Values:
