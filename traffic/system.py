@@ -79,6 +79,7 @@ from traffic.features.standing import Standing
 from traffic.features.stop_lines import StopLines
 from traffic.features.swaying import SWINGS, Swaying
 from traffic.features.unfiltered import UnfilteredCars
+from traffic.features.travelling import Travelling
 from traffic.world import World
 
 __all__ = [
@@ -428,10 +429,11 @@ def _units(world: World, made: Made) -> dict[str, Any]:
         "Moving": Moving,
         "StableFor": StableFor,
         "NearPairs": NearPairs,
-        "CarRelations": CarRelations,
+        "CarRelations": partial(CarRelations, world.road_map),
         "UnfilteredCars": partial(UnfilteredCars, world.road_map),
         "AngularRelations": AngularRelations,
         "Headways": partial(Headways, world.road_map),
+        "Travelling": Travelling,
         "Following": Following,
         "Swaying": Swaying,
         "BesideBuilding": partial(BesideBuilding, world.road_map),

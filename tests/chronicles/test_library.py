@@ -1,5 +1,6 @@
 """The chronicles in data/chronicles, each behaviour recognised once and its look-alikes not."""
 
+from collections import Counter
 from collections.abc import Iterable
 from pathlib import Path
 
@@ -198,7 +199,7 @@ def test_cars_that_are_gone_leave_nothing_behind(crossing):
 def road() -> World:
     """Return a world in which both cars move and c1 is behind c2."""
     world = World("overtakes")
-    world.tell(0, [("cars.moving c1", "true"), ("cars.moving c2", "true")])
+    world.tell(0, [("cars.travelling c1", "true"), ("cars.travelling c2", "true")])
     world.tell(100, relation("behind"))
     return world
 
@@ -242,8 +243,8 @@ def test_flickering_relations_make_one_overtake(road):
 def test_passing_a_queue_is_no_overtake(road):
     """A car that passes one that stands, or that stood in between, overtakes nobody."""
     road.tell(1000, relation("beside"))
-    road.tell(1500, [("cars.moving c2", "false")])
-    road.tell(2000, [("cars.moving c2", "true")])
+    road.tell(1500, [("cars.travelling c2", "false")])
+    road.tell(2000, [("cars.travelling c2", "true")])
     road.tell(3000, relation("in_front"))
 
     assert road.names() == []
@@ -269,6 +270,7 @@ def test_an_overtake_that_takes_too_long_or_is_broken_off_is_none(road):
 def test_moving_cars_do_not_multiply(road):
     """The instances kept grow with the cars and not with their pairs."""
     for i in range(200):
-        road.tell(1000 + i, [(f"cars.moving d{i}", "true")])
+        road.tell(1000 + i, [(f"cars.travelling d{i}", "true")])
 
-    assert len(road.recogniser.partial_instances()) == 2 * 202
+    waiting = Counter(each.chronicle for each in road.recogniser.partial_instances())
+    assert set(waiting.values()) == {2 * 202}

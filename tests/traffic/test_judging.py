@@ -42,7 +42,7 @@ _STREAMS = (
     "car_pairs",
     "car_changes",
     "cars/1",
-    "car_relation_attributes/1",
+    "car_relations/1",
     "overtakes/1",
     "output/cars",
     "output/percepts",
@@ -142,7 +142,7 @@ def test_one_wrong_number_is_named(recording: Path, tmp_path: Path) -> None:
     assert breach.expected.startswith("speed[car")
     assert breach.valid_time == TimePoint(2_000_000_000)
     blamed = {each.stream for each in judgement.breaches}
-    assert blamed == {"cars", "moving_cars/1", "car_pairs/1", "output/cars"}
+    assert blamed == {"cars", "moving_cars/1", "travelling_cars/1", "car_pairs/1", "output/cars"}
     document = document_from(judged)
     (plain,) = next(each for each in document["findings"] if each["stream"] == "cars")["breaches"]
     assert plain["valid_time"] == 2000.0

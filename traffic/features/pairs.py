@@ -19,6 +19,7 @@ from dyknow.time import Duration, TimePoint
 
 __all__ = ["NearPairs", "near_pairs_along", "pair_id"]
 
+Floats = npt.NDArray[np.float64]
 Indices = npt.NDArray[np.intp]
 
 _ID_BITS = 31
@@ -94,5 +95,13 @@ class NearPairs(Reactive):
             "ahead": along[second] - along[first],
             "left": cars["d"][first] - cars["d"][second],
             "clearance": (cars["length"][first] + cars["length"][second]) / 2,
+            "ahead_deviation": _deviation(cars["s_variance"], first, second),
+            "left_deviation": _deviation(cars["d_variance"], first, second),
         }
         return Table("car_pair", pair_id(cars.ids[first], cars.ids[second]), columns)
+
+
+def _deviation(variance: Floats, first: Indices, second: Indices) -> Floats:
+    """Return the standard deviations of differences between two rows, metres."""
+    deviation: Floats = np.sqrt(variance[first] + variance[second])
+    return deviation

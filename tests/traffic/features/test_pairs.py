@@ -4,7 +4,10 @@ import numpy as np
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from traffic.features.pairs import near_pairs_along
+from dyknow.streams.sample import Sample
+from dyknow.streams.table import Table
+from dyknow.time import MILLISECOND, Duration, TimePoint
+from traffic.features.pairs import NearPairs, near_pairs_along
 
 CARS = st.lists(st.tuples(st.integers(-1, 3), st.integers(-50, 50)), max_size=25)
 
@@ -27,3 +30,30 @@ def test_near_pairs_are_those_that_trying_all_pairs_finds(cars, distance):
     ]
     assert found == expected
     assert (along[behind] <= along[ahead]).all()
+
+
+def test_pairs_know_how_uncertain_they_are():
+    """Errors of two cars are independent, so that their variances add."""
+    cars = Table(
+        "car",
+        [1, 2],
+        {
+            "observed_at": np.zeros(2, dtype=np.int64),
+            "direction_in_link": np.ones(2),
+            "link_of_road": np.zeros(2, dtype=np.int32),
+            "position_along_link": np.array([0.0, 20.0]),
+            "d": np.array([1.0, -2.0]),
+            "length": np.array([4.0, 6.0]),
+            "s_variance": np.array([9.0, 16.0]),
+            "d_variance": np.array([0.09, 0.16]),
+        },
+    )
+    unit = NearPairs(distance=60.0, active_for=Duration(400 * MILLISECOND))
+    (out,) = unit.push(TimePoint(0), (Sample(cars, TimePoint(0), TimePoint(0)),))
+
+    pairs = out.value
+    assert pairs["ahead"].tolist() == [20.0, -20.0]
+    assert pairs["left"].tolist() == [3.0, -3.0]
+    assert pairs["clearance"].tolist() == [5.0, 5.0]
+    np.testing.assert_allclose(pairs["ahead_deviation"], 5.0)
+    np.testing.assert_allclose(pairs["left_deviation"], 0.5)
