@@ -29,7 +29,7 @@ class WrongWayWatcher:
     heading by more than 120°, and it is faster than 1 m/s. It drives the wrong way if it does so
     for at least 5 s and draws level with nobody who travels the same way on the same link: with
     nobody that was up to 60 m ahead of it, clear of it, at some time of the stretch. Who
-    overtakes, or tries to, drives on the other side for a reason.
+    overtakes, even if it is broken off beside the other, is on the other side for a reason.
 
     Args:
         road_map: The map.
