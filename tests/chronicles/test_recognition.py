@@ -1,12 +1,16 @@
 """The promises of the recogniser, one by one."""
 
+from dataclasses import replace
+
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from chronicles.events import Event
-from chronicles.models import models_from_chronicles
+from chronicles.models import Model, models_from_chronicles
 from chronicles.parser import parse_chronicles
+from chronicles.patterns import Pattern, pattern_from_event_type
+from chronicles.prospects import EndedInstance, PartialInstance
 from chronicles.recognition import Recogniser
 from dyknow.time import MILLISECOND, TimePoint
 
@@ -103,27 +107,43 @@ def test_a_variable_does_not_take_an_unknown_value():
     assert told(recogniser_of(text.format("?x")), first) == []
 
 
-def test_partial_instances_are_listed_with_what_they_wait_for():
-    """The worked example of the thesis (section 8.4): A, B, and C at most 5 later than B."""
-    recogniser = recogniser_of(
-        "chronicle c { event(A, a) event(B, b) event(C, c) c - b in [0, 5] }"
-    )
+def test_partial_instances_are_those_of_the_worked_example():
+    """Heintz (2009), section 8.4, step by step: A, B, and C at most 5 later than B.
 
-    def listed() -> list[dict[str, int]]:
-        return [
-            {name: time // MS for name, time in one.instants.items()}
-            for one in recogniser.partial_instances()
-        ]
+    The empty instance, which is always there, is not listed; a complete one is recognised.
+    """
+    ended: list[EndedInstance] = []
+    text = "chronicle c { event(A, a) event(B, b) event(C, c) c - b in [0, 5] }"
+    recogniser = Recogniser(models_from_chronicles(parse_chronicles(text)), on_end=ended.append)
 
-    told(recogniser, message("A", 4), message("B", 5), message("B", 8))
-    assert sorted(map(str, listed())) == sorted(
-        map(str, [{"a": 4}, {"b": 5}, {"b": 8}, {"a": 4, "b": 5}, {"a": 4, "b": 8}])
-    )
+    def listed() -> set[str]:
+        return {seen_in(one) for one in recogniser.partial_instances()}
+
+    told(recogniser, message("A", 4))
+    assert listed() == {"A4"}
+
+    told(recogniser, message("B", 5))
+    assert listed() == {"A4", "B5", "A4 B5"}
+
+    told(recogniser, message("B", 8))
+    assert listed() == {"A4", "B5", "B8", "A4 B5", "A4 B8"}
+    assert ended == []
 
     recogniser.advance(TimePoint(11 * MS))
-    assert sorted(map(str, listed())) == sorted(map(str, [{"a": 4}, {"b": 8}, {"a": 4, "b": 8}]))
+    assert listed() == {"A4", "B8", "A4 B8"}
+    assert {(seen_in(one.instance), one.reason) for one in ended} == {
+        ("B5", "deadline"),
+        ("A4 B5", "deadline"),
+    }
+    assert {one.time for one in ended} == {11 * MS}
 
     assert told(recogniser, message("C", 12)) == [(4, 8, 12)]
+    assert listed() == {"A4", "B8", "C12", "A4 B8", "A4 C12", "B8 C12"}
+
+
+def seen_in(instance: PartialInstance) -> str:
+    """Return the events that a partial instance has seen, with their times in milliseconds."""
+    return " ".join(f"{event.attribute}{event.time // MS}" for event in instance.events)
 
 
 def test_what_is_awaited_carries_values_and_limits():
@@ -290,3 +310,133 @@ def test_an_instance_that_dies_says_why(tail, events, reason):
     recogniser.advance(TimePoint(100 * MS))
 
     assert [one.reason for one in ended] == [reason]
+
+
+@pytest.mark.parametrize("begin", [-(10**12), 0, 1_700_000_000_000, 9 * 10**12])
+def test_any_time_of_64_bits_will_do(begin):
+    """Long before time zero and in our own days everything is as it is at the beginning."""
+    recogniser = recogniser_of(
+        "chronicle c[?x] { event(a[?x], t1) event(b[?x], t2) noevent(d, (t1 + 1, t2))"
+        " t1 < t2 <= t1 + 100 }"
+    )
+    events = [("a", 0), ("b", 7), ("d", 9), ("b", 11), ("a", 200), ("b", 300), ("a", 400)]
+
+    found = told(recogniser, *(message(n, begin + t, *"x" * (n != "d")) for n, t in events))
+
+    assert found == [(begin, begin + 7), (begin + 200, begin + 300)]
+    assert recogniser.next_deadline() == (begin + 501) * MS
+    recogniser.advance(TimePoint((begin + 501) * MS))
+    assert recogniser.size() == 0
+
+
+def test_a_window_since_time_zero_has_no_other_end():
+    """A chronicle that must begin before some time begins however long before."""
+    recogniser = recogniser_of("chronicle c { event(a, t1) t1 <= 5 }")
+
+    assert told(recogniser, *(message("a", t) for t in (-(10**14), 5, 6))) == [(-(10**14),), (5,)]
+
+
+def test_what_an_event_says_is_believed():
+    """The recogniser keeps no values: an event may contradict the one before."""
+    recogniser = recogniser_of("chronicle c { event(p:(u, v), t1) event(p:(u, v), t2) t1 < t2 }")
+
+    def change(time: int) -> Event:
+        return Event("p", (), "u", "v", TimePoint(time * MS))
+
+    assert told(recogniser, change(1), change(2)) == [(1, 2)]
+
+
+def test_events_of_another_shape_are_none_of_the_chronicle():
+    """Another name, more or fewer arguments, a message, or a value that is lost: nothing matches."""
+    recogniser = recogniser_of("chronicle c[?x] { event(p[?x]:(?, v), t1) }")
+    now = TimePoint(0)
+
+    strangers = [
+        Event("q", ("x",), None, "v", now),
+        Event("p", ("x", "y"), None, "v", now),
+        Event("p", (), None, "v", now),
+        Event("p", ("x",), None, None, now),
+        Event("p", ("x",), "v", None, now),
+    ]
+
+    assert told(recogniser, *strangers) == []
+    assert recogniser.partial_instances() == []
+
+
+def test_thousands_of_chronicles_are_registered_and_cost_only_those_concerned():
+    """They come one by one; an event is given to the one that asks for its object."""
+    text = (
+        "chronicle c {{ event(p[{0}]:(?, true), t1) event(p[{0}]:(true, false), t2)"
+        " t1 < t2 <= t1 + 50 noevent(p[{0}]:(?, true), (t1 + 1, t2)) }}"
+    )
+    (model,) = models_from_chronicles(parse_chronicles(text.format("car0")))
+    recogniser = Recogniser()
+    for i in range(2_000):
+        recogniser.register([of_another_object(model, f"c{i}", f"car{i}")])
+
+    found = []
+    for time in range(100):
+        value = ("true", "false")[time % 2]
+        before = ("false", "true")[time % 2]
+        event = Event("p", (f"car{time // 2 * 39}",), before, value, TimePoint(time * MS))
+        found += recogniser.push(event.time, [event])
+
+    assert [one.chronicle for one in found] == [f"c{i * 39}" for i in range(50)]
+
+
+def of_another_object(model: Model, name: str, value: str) -> Model:
+    """Return a model as that of a chronicle that asks for another object."""
+
+    def moved(pattern: Pattern) -> Pattern:
+        (argument,) = pattern.event_type.arguments
+        other = replace(argument, text=value)
+        return pattern_from_event_type(replace(pattern.event_type, arguments=(other,)))
+
+    return replace(
+        model,
+        name=name,
+        slots=tuple(replace(slot, pattern=moved(slot.pattern)) for slot in model.slots),
+        counters=tuple(replace(each, pattern=moved(each.pattern)) for each in model.counters),
+    )
+
+
+def test_a_chronicle_of_two_hundred_events_is_recognised():
+    """A chain of two hundred events is followed for several objects at once."""
+    n = 200
+    events = " ".join(f"event(e{i}[?x], t{i})" for i in range(n))
+    order = " < ".join(f"t{i}" for i in range(n))
+    recogniser = recogniser_of(f"chronicle c[?x] {{ {events} {order} t{n - 1} - t0 <= 10000 }}")
+
+    found = told(recogniser, *(message(f"e{i}", i, x) for i in range(n) for x in ("u", "v")))
+
+    assert found == [tuple(range(n))] * 2
+
+
+def test_stages_that_nothing_is_at_are_forgotten():
+    """A chronicle whose events come in any order goes through hundreds of stages, and on."""
+    n = 9
+    events = " ".join(f"event(e{i}[?x], t{i})" for i in range(n))
+    recogniser = recogniser_of(f"chronicle c[?x] {{ {events} end - start <= 100 }}")
+    found = []
+    for turn in range(3):
+        for i in range(n):
+            at = (i * 7 + turn) % n
+            found += told(recogniser, message(f"e{at}", turn * 1_000 + i, f"x{turn}"))
+
+    assert len(found) == 3
+    recogniser.advance(TimePoint(10_000 * MS))
+    assert recogniser.size() == 0
+
+
+def test_late_events_leave_no_trace():
+    """A late event changes neither clock nor instances, whatever it says."""
+    text = "chronicle c { event(a, t1) event(b, t2) t1 <= t2 <= t1 + 10 }"
+    with_late, without = recogniser_of(text), recogniser_of(text)
+    for recogniser in (with_late, without):
+        told(recogniser, message("a", 5))
+        recogniser.advance(TimePoint(9 * MS))
+
+    assert told(with_late, message("b", 7), message("a", 8)) == []
+
+    assert with_late.partial_instances() == without.partial_instances()
+    assert (with_late.clock, with_late.n_late) == (9 * MS, 2)
