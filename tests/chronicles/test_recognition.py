@@ -347,7 +347,7 @@ def test_what_an_event_says_is_believed():
 
 
 def test_events_of_another_shape_are_none_of_the_chronicle():
-    """Another name, more or fewer arguments, a message, or a value that is lost: nothing matches."""
+    """Another name, more or fewer arguments, a message, a value that is lost: no match."""
     recogniser = recogniser_of("chronicle c[?x] { event(p[?x]:(?, v), t1) }")
     now = TimePoint(0)
 
