@@ -48,8 +48,10 @@ class StopLines(Reactive):
         road = np.asarray(roads.lane_columns.road[signals.lane], dtype=np.int32)
         s, d = roads.project(signals.lines.mean(axis=1), road)
         self._of_road = {r: np.flatnonzero(road == r) for r in np.unique(road).tolist()}
-        self._line_at, self._across = s, d
-        self._road_of_signal = road
+        self._across = d
+        # The last element is what the signal -1 has.
+        self._line_at = np.append(s, np.inf)
+        self._road_of_signal = np.append(road, _NONE)
         self._length = np.asarray(roads.road_length, dtype=np.float64)
         self._entry = np.full(len(roads.roads), _NONE, dtype=np.int32)
         for before in self._of_road:
@@ -85,12 +87,9 @@ class StopLines(Reactive):
 
     def _past(self, cars: Table, signal: Integers) -> Floats:
         """Return the metres from the line to the front of each car; negative before the line."""
-        approach = self._road_of_signal[signal] if len(self._road_of_signal) else signal
-        front = cars["s"] + cars["length"] / 2
-        in_crossing = cars["road"] != approach
-        front = front + np.where(in_crossing, self._length[approach], 0.0)
-        line = self._line_at[signal] if len(self._line_at) else front
-        past: Floats = np.where(signal >= 0, front - line, -np.inf)
+        approach = self._road_of_signal[signal]
+        behind = np.where(cars["road"] != approach, self._length[approach], 0.0)
+        past: Floats = cars["s"] + cars["length"] / 2 + behind - self._line_at[signal]
         return past
 
     def _held(self, name: str, signal: Integers, past: Floats, least: float) -> Integers:
