@@ -5,11 +5,12 @@ Times are nanoseconds here and milliseconds in JSON, a whole number where they a
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, Final
 
 from dyknow.time import MILLISECOND, TimePoint, milliseconds
 
 __all__ = [
+    "LAST_TIME",
     "Event",
     "Recognition",
     "event_from_json",
@@ -19,6 +20,9 @@ __all__ = [
     "json_from_time",
     "recognition_from_json",
 ]
+
+LAST_TIME: Final = (1 << 63) - 1
+"""The last time, and the first with a minus before it: nanoseconds have 64 bits."""
 
 
 @dataclass(slots=True)
@@ -83,7 +87,7 @@ def event_from_json(document: Mapping[str, Any]) -> Event:
         arguments=_arguments(document),
         from_value=None if is_message else _value(document.get("from"), "from"),
         to_value=None if is_message else _text(document, "to"),
-        time=TimePoint(milliseconds(time)),
+        time=_time(time),
     )
 
 
@@ -147,6 +151,12 @@ def json_from_time(time: int) -> int | float:
     """Return *time* in milliseconds, as a whole number where it is one."""
     whole, rest = divmod(time, MILLISECOND)
     return time / MILLISECOND if rest else whole
+
+
+def _time(amount: float) -> TimePoint:
+    if abs(amount) <= LAST_TIME / MILLISECOND:
+        return TimePoint(milliseconds(amount))
+    raise ValueError(f"expected a time within 292 years of time zero as 't', found {amount!r}")
 
 
 def _text(document: Mapping[str, Any], key: str) -> str:

@@ -24,7 +24,7 @@ from itertools import count
 from typing import cast
 
 from chronicles.constraints import INSTANT
-from chronicles.events import Event, Recognition, event_from_recognition
+from chronicles.events import LAST_TIME, Event, Recognition, event_from_recognition
 from chronicles.instances import Agenda, Instance
 from chronicles.matching import Listener, Matcher
 from chronicles.models import Model
@@ -153,6 +153,9 @@ class Recogniser:
 
         Further events of the same instant may follow in another call. Late events are left out
         and counted in `n_late`.
+
+        Raises:
+            ValueError: The time does not have 64 bits.
         """
         now = time - time % INSTANT
         recognised: list[Recognition] = []
@@ -160,6 +163,8 @@ class Recogniser:
             if self._clock is not None and now < self._clock:
                 self.n_late += sum(1 for _ in events)
                 return recognised
+            if not -LAST_TIME <= now <= LAST_TIME:
+                raise ValueError(f"expected a time of 64 bits, found {time} ns")
             if self._agenda.next <= now:
                 self._work_off(now, recognised)
             self._clock = now

@@ -80,6 +80,9 @@ def test_truth_values_and_numbers_become_text():
     ("document", "message"),
     [
         ({"attribute": "p", "to": "v"}, "expected a number of milliseconds as 't', found None"),
+        ({"t": 1e300, "message": "m"}, "expected a time within 292 years of time zero as 't'"),
+        ({"t": float("nan"), "message": "m"}, "found nan"),
+        ({"t": -(10**400), "message": "m"}, "expected a time within 292 years"),
         ({"t": True, "message": "m"}, "expected a number of milliseconds as 't', found True"),
         ({"t": 1}, "expected either 'attribute' or 'message', found none"),
         ({"t": 1, "attribute": "p"}, "expected a value for 'to', found none"),

@@ -329,6 +329,17 @@ def test_any_time_of_64_bits_will_do(begin):
     assert recogniser.size() == 0
 
 
+@pytest.mark.parametrize("time", [1 << 63, -(1 << 64)])
+def test_a_time_of_more_than_64_bits_is_refused(time):
+    """Nothing has happened then: the clock stays where it is."""
+    recogniser = recogniser_of("chronicle c { event(a, t1) }")
+
+    with pytest.raises(ValueError, match="expected a time of 64 bits"):
+        recogniser.push(TimePoint(time), [])
+
+    assert recogniser.clock is None
+
+
 def test_a_window_since_time_zero_has_no_other_end():
     """A chronicle that must begin before some time begins however long before."""
     recogniser = recogniser_of("chronicle c { event(a, t1) t1 <= 5 }")
