@@ -8,7 +8,7 @@ from chronicles.conditions import contradictory_conditions
 from chronicles.declared import Declared
 from chronicles.errors import ChronicleError, InconsistentConstraintsError, UnboundInstantError
 from chronicles.event_types import faults_of_event_type
-from chronicles.expansion import Expansion, expand, instants_of
+from chronicles.expansion import DEEPEST, MOST_EVENTS, Expansion, expand, instants_of
 from chronicles.naming import (
     faults_of_condition,
     faults_of_domain,
@@ -90,6 +90,11 @@ def _faults_of_chronicle(
 ) -> Iterator[SpecificationError]:
     yield from _faults_of_statements(chronicle, declared)
     expansion = expand(chronicle, file)
+    if expansion.is_too_large:
+        limits = f"{MOST_EVENTS} events, and {DEEPEST} others inside one another"
+        message = f"expected chronicle '{chronicle.name}' to have at most {limits}, found more"
+        yield ChronicleError(message, chronicle.span)
+        return
     if not expansion.events:
         if not any(isinstance(s, Inclusion) for s in chronicle.statements):
             message = f"chronicle '{chronicle.name}' has no event"

@@ -37,9 +37,9 @@ class Declared:
         """Return what *file* declares; of several of one name, the first."""
         return Declared(
             _whole_domains(file.domains),
-            {declaration.name: declaration for declaration in reversed(file.constraints)},
+            file.constraint_by_name,
             {declaration.name: declaration for declaration in file.signals},
-            {chronicle.name: chronicle for chronicle in reversed(file.chronicles)},
+            file.chronicle_by_name,
         )
 
     def allowed(self, signal: Signal, parameter: str) -> Callable[[str], bool]:

@@ -37,10 +37,28 @@ from chronicles.syntax import (
 from dyknow.source_text import Span
 from dyknow.time import Duration
 
-__all__ = ["END", "START", "Expansion", "Extreme", "expand", "instants_of", "statements_used"]
+__all__ = [
+    "DEEPEST",
+    "END",
+    "MOST_EVENTS",
+    "START",
+    "Expansion",
+    "Extreme",
+    "expand",
+    "instants_of",
+    "statements_used",
+]
 
 START = "start"
 END = "end"
+
+DEEPEST = 100
+"""How many chronicles and constraints may be inside one another."""
+
+MOST_EVENTS = 500
+"""How many events a chronicle may ask for, with those of what it includes."""
+
+_MOST_STATEMENTS = 10_000
 
 
 @dataclass(frozen=True, slots=True)
@@ -66,12 +84,14 @@ class Expansion:
         extremes: What stands for the beginning or the end, by name.
         declared: The instants that are declared, and where.
         stars: The star variables that are declared, and where.
+        is_too_large: Whether something is left out because there is too much.
     """
 
     statements: list[Statement] = field(default_factory=list)
     extremes: dict[str, Extreme] = field(default_factory=dict)
     declared: dict[str, Span] = field(default_factory=dict)
     stars: dict[str, Span] = field(default_factory=dict)
+    is_too_large: bool = False
 
     @property
     def events(self) -> list[EventAt]:
@@ -136,10 +156,11 @@ def statements_used(
 
 class _Expander:
     def __init__(self, file: ChronicleFile) -> None:
-        self._chronicles = {c.name: c for c in reversed(file.chronicles)}
-        self._constraints = {c.name: c for c in reversed(file.constraints)}
+        self._chronicles = file.chronicle_by_name
+        self._constraints = file.constraint_by_name
         self._found = Expansion()
         self._path: list[str] = []
+        self._n_events = 0
         self._n_anonymous: dict[str, int] = {}
 
     def expand(self, chronicle: Chronicle) -> Expansion:
@@ -178,8 +199,22 @@ class _Expander:
                 case _:
                     self._found.statements.append(_renamed(statement, words))
 
+    def _is_full(self) -> bool:
+        """Return whether nothing more may be put in, and remember it if so."""
+        found = self._found
+        is_full = (
+            len(self._path) > DEEPEST
+            or self._n_events > MOST_EVENTS
+            or len(found.statements) > _MOST_STATEMENTS
+        )
+        found.is_too_large = found.is_too_large or is_full
+        return is_full
+
     def _add_event(self, event: EventAt) -> None:
         """Add an event; the time of one that is displaced is an instant of its own."""
+        self._n_events += 1
+        if self._is_full():
+            return
         displacement = event.displacement
         if displacement is None:
             self._found.statements.append(event)
@@ -208,6 +243,8 @@ class _Expander:
         declaration = self._constraints.get(use.name)
         if declaration is None or use.name in self._path or not _fits(use, declaration):
             return
+        if self._is_full():
+            return
         names = [parameter.name for parameter in declaration.parameters]
         use = _renamed(use, words)
         inner = _Words(
@@ -222,6 +259,8 @@ class _Expander:
     def _include(self, use: Inclusion, words: _Words) -> None:
         chronicle = self._chronicles.get(use.name)
         if chronicle is None or use.name in self._path or not _fits_chronicle(use, chronicle):
+            return
+        if self._is_full():
             return
         number = self._n_anonymous[use.name] = self._n_anonymous.get(use.name, 0) + 1
         prefix = f"{words.prefix}{use.name}{'' if number == 1 else number}."

@@ -50,6 +50,7 @@ COMMENT: /(?:#|\/\/)[^\n]*/
 
 _IN_ASCII = {"\u2212": "-", "\u2264": "<=", "\u2265": ">=", "\u2260": "!="}
 _MOST_FAULTS = 20
+_DEEPEST = 200
 _KEYWORD = re.compile(r'"([a-z_]+)"')
 _STARTS = frozenset({"_ATTRIBUTE", "_DOMAIN"})
 """Terminals that are accepted together only between declarations."""
@@ -87,6 +88,11 @@ def parse_chronicles(text: str, name: str = "<chronicles>") -> ChronicleFile:
         message = f"expected at most {MAX_DEPTH} brackets inside one another, found more"
         raise SpecificationErrors("1 fault(s)", [ChronicleSyntaxError(message, place)])
     tree, faults = _tree(source, outline)
+    deepest = None if tree is None else _too_deep(tree)
+    if deepest is not None:
+        message = f"expected at most {_DEEPEST} operators inside one another, found more"
+        fault = ChronicleSyntaxError(message, _span_of_token(source, deepest))
+        raise SpecificationErrors("1 fault(s)", [fault])
     pieces = _Pieces(source)
     found: ChronicleFile | None = None
     if tree is not None:
@@ -117,6 +123,18 @@ def _tree(
             break
         text = text[:start] + re.sub(r"\S", " ", text[start:end]) + text[end:]
     return None, faults
+
+
+def _too_deep(tree: Tree[Token]) -> Token | None:
+    """Return a token that stands deeper in a tree than one can follow, if there is one."""
+    level: list[Tree[Token]] = [tree]
+    for _ in range(_DEEPEST):
+        level = [child for parent in level for child in parent.children if isinstance(child, Tree)]
+    return next((token for each in level for token in each.scan_values(_is_token)), None)
+
+
+def _is_token(child: object) -> bool:
+    return isinstance(child, Token)
 
 
 @cache

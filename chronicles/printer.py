@@ -155,17 +155,17 @@ def _(node: DomainReference) -> str:
 
 @text_of.register
 def _(node: DomainUnion) -> str:
-    return f"{_operand_domain(node.left)} | {_operand_domain(node.right)}"
+    return f"{_first_domain(node)} | {_operand_domain(node.right)}"
 
 
 @text_of.register
 def _(node: DomainIntersection) -> str:
-    return f"{_operand_domain(node.left)} & {_operand_domain(node.right)}"
+    return f"{_first_domain(node)} & {_operand_domain(node.right)}"
 
 
 @text_of.register
 def _(node: DomainDifference) -> str:
-    return f"{_operand_domain(node.left)} \\ {_operand_domain(node.right)}"
+    return f"{_first_domain(node)} \\ {_operand_domain(node.right)}"
 
 
 @text_of.register
@@ -187,17 +187,17 @@ def _(node: Relation) -> str:
 def _(node: Negation) -> str:
     if isinstance(node.body, Membership):
         return f"{text_of(node.body.variable)} not in {text_of(node.body.domain)}"
-    return f"not {_operand_condition(node.body)}"
+    return f"not {_last_condition(node, node.body)}"
 
 
 @text_of.register
 def _(node: Conjunction) -> str:
-    return f"{_operand_condition(node.left)} and {_operand_condition(node.right)}"
+    return f"{_operand_condition(node.left)} and {_last_condition(node, node.right)}"
 
 
 @text_of.register
 def _(node: Disjunction) -> str:
-    return f"{_operand_condition(node.left)} or {_operand_condition(node.right)}"
+    return f"{_operand_condition(node.left)} or {_last_condition(node, node.right)}"
 
 
 @text_of.register
@@ -317,6 +317,17 @@ def _head(node: Chronicle | ConstraintDeclaration) -> str:
 def _operand_domain(domain: Domain) -> str:
     is_simple = isinstance(domain, ValueSet | DomainReference | DomainComplement)
     return text_of(domain) if is_simple else f"({text_of(domain)})"
+
+
+def _first_domain(node: DomainUnion | DomainIntersection | DomainDifference) -> str:
+    """Return the left part, without brackets if it is read first anyway."""
+    is_first = type(node.left) is type(node)
+    return text_of(node.left) if is_first else _operand_domain(node.left)
+
+
+def _last_condition(node: Condition, part: Condition) -> str:
+    """Return the right part of a condition, without brackets if it is read last anyway."""
+    return text_of(part) if type(part) is type(node) else _operand_condition(part)
 
 
 def _operand_condition(condition: Condition) -> str:

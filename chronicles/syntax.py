@@ -6,8 +6,9 @@ chronicle language is one millisecond: `t3 + 1` is the next instant, and `t1 < t
 is at least one instant later.
 """
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
+from functools import cached_property
 
 from lark.ast_utils import Ast
 
@@ -507,26 +508,36 @@ class ChronicleFile(_Node):
         ...,
     ]
 
-    @property
+    @cached_property
     def domains(self) -> tuple[DomainDeclaration, ...]:
         """The declared domains."""
         return tuple(d for d in self.declarations if isinstance(d, DomainDeclaration))
 
-    @property
+    @cached_property
     def constraints(self) -> tuple[ConstraintDeclaration, ...]:
         """The declared constraints."""
         return tuple(d for d in self.declarations if isinstance(d, ConstraintDeclaration))
 
-    @property
+    @cached_property
     def signals(self) -> tuple[AttributeDeclaration | MessageDeclaration, ...]:
         """The declared attributes and messages."""
         kinds = (AttributeDeclaration, MessageDeclaration)
         return tuple(d for d in self.declarations if isinstance(d, kinds))
 
-    @property
+    @cached_property
     def chronicles(self) -> tuple[Chronicle, ...]:
         """The chronicle models."""
         return tuple(d for d in self.declarations if isinstance(d, Chronicle))
+
+    @cached_property
+    def chronicle_by_name(self) -> Mapping[str, Chronicle]:
+        """The first chronicle of each name."""
+        return {chronicle.name: chronicle for chronicle in reversed(self.chronicles)}
+
+    @cached_property
+    def constraint_by_name(self) -> Mapping[str, ConstraintDeclaration]:
+        """The first constraint of each name."""
+        return {constraint.name: constraint for constraint in reversed(self.constraints)}
 
 
 def variables_of(event_type: EventType) -> Iterator[Variable]:
