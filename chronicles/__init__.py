@@ -20,7 +20,8 @@ Read in this order:
   `processes`: the recogniser on streams; `recognised`: what it recognises as events for others;
   `marking`: the objects that it was about
 - `attributes`: which streams the attributes of chronicles stand for; `observing`: changes of
-  their values as events; `reasoning`: chronicles over the streams of a network
+  their values as events; `registering`: what is declared for a chronicle; `reasoning`: chronicles
+  over the streams of a network
 - `errors`
 """
 

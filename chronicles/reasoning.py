@@ -7,13 +7,12 @@ and takes away what has been made when the chronicle is withdrawn.
 """
 
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from itertools import count
 
 from chronicles.attributes import (
     RECOGNITIONS,
     AttributeInterpretation,
-    AttributeOrigin,
     attributes_of,
     origins_of_attributes,
 )
@@ -21,129 +20,38 @@ from chronicles.models import Model, models_from_chronicles
 from chronicles.observing import AttributeChanges
 from chronicles.parser import parse_chronicles
 from chronicles.processes import ChronicleRecogniser
+from chronicles.registering import (
+    FIND_CHANGES,
+    RECOGNISE,
+    ChronicleAlreadyRegisteredError,
+    NoSuchChronicleError,
+    RecognitionSettings,
+    Registration,
+    StreamChanges,
+    constraints_of,
+    declaration_of_changes,
+    declarations_of_recognitions,
+)
 from chronicles.syntax import ChronicleFile, MessageDeclaration
-from dyknow.errors import PrototypeAlreadyExistsError, ServiceError
-from dyknow.kpl.build import application, compunit, specification, stream, strmgen, term
-from dyknow.kpl.build import label as label_of
+from dyknow.errors import PrototypeAlreadyExistsError
+from dyknow.kpl.build import compunit, specification
 from dyknow.kpl.implementations import Implementations
 from dyknow.kpl.members import is_object, label_from
 from dyknow.kpl.names import Declarations
 from dyknow.kpl.network import Network
 from dyknow.kpl.promises import policy_of_input
-from dyknow.kpl.syntax import (
-    ANY_SORT,
-    Constraint,
-    Declaration,
-    MaxDelay,
-    MonotoneOrder,
-    Setting,
-    StreamTerm,
-    Text,
-    Time,
-)
+from dyknow.kpl.syntax import ANY_SORT, Declaration, StreamTerm
 from dyknow.runtime.generators import Label, Receive
 from dyknow.runtime.subscriptions import StreamProxy
 from dyknow.source_text import nearest_name
 from dyknow.time import Duration
 
-__all__ = [
-    "ChronicleAlreadyRegisteredError",
-    "ChronicleReasoner",
-    "Chronicles",
-    "NoSuchChronicleError",
-    "RecognitionSettings",
-    "Registration",
-]
+__all__ = ["ChronicleReasoner", "Chronicles"]
 
-_CHANGES = "AttributeChanges"
-_RECOGNISE = "RecogniseChronicle"
 _EVENTS_SORT = "events"
 
 Chronicles = str | ChronicleFile | Sequence[Model]
 """A text of chronicles, what has been read from one, or what has been made of it."""
-
-
-class ChronicleAlreadyRegisteredError(ServiceError):
-    """A chronicle of this name is recognised already."""
-
-    def __init__(self, name: str) -> None:
-        super().__init__(f"chronicle '{name}' is recognised already")
-
-
-class NoSuchChronicleError(ServiceError):
-    """No chronicle of this name is recognised."""
-
-    def __init__(self, name: str, nearest: str | None) -> None:
-        hint = f"; did you mean '{nearest}'?" if nearest else ""
-        super().__init__(f"no chronicle called '{name}' is recognised{hint}")
-
-
-@dataclass(frozen=True, slots=True)
-class RecognitionSettings:
-    """How chronicles are recognised.
-
-    Attributes:
-        max_delay: How long after its valid time a sample of any stream may arrive; later ones
-            are left out, and published as violations. None to go by what the streams promise.
-        limit: How many partial instances of each chronicle are kept; None for any number.
-    """
-
-    max_delay: Duration | None = None
-    limit: int | None = None
-
-
-class Registration:
-    """A chronicle that a network recognises.
-
-    Attributes:
-        name: The name of the chronicle.
-        label: The label of the stream generator of its recognitions.
-        origins: Where the changes of its attributes come from.
-        unit: The process that recognises it.
-        max_delay: How long after its valid time a recognition is known at the latest, as far as
-            the streams promise it.
-    """
-
-    def __init__(
-        self, model: Model, origins: Iterable[AttributeOrigin], settings: RecognitionSettings
-    ) -> None:
-        self.name = model.name
-        self.label = f"{RECOGNITIONS}[{model.name}]"
-        self.origins = tuple(origins)
-        self.unit = ChronicleRecogniser([model], limit=settings.limit)
-        self.max_delay: Duration | None = None
-        self.settings = settings
-        self.changes: list[_Changes] = []
-
-    @property
-    def streams(self) -> tuple[str, ...]:
-        """The labels of the streams that its attributes name."""
-        return tuple(dict.fromkeys(origin.stream for origin in self.origins))
-
-    def origins_in(self, stream: str) -> list[AttributeOrigin]:
-        """Return the attributes whose changes come from a stream."""
-        return [origin for origin in self.origins if origin.stream == stream]
-
-
-@dataclass(eq=False)
-class _Changes:
-    """The changes in one stream under one policy, and how many chronicles need them.
-
-    Attributes:
-        label: The label of the stream generator of the changes.
-        term: The stream itself.
-        stream: Its label.
-        unit: The process that finds the changes.
-        max_delay: The largest delay of its samples, if one is promised.
-        n_users: How many chronicles need them.
-    """
-
-    label: str
-    term: StreamTerm
-    stream: str
-    unit: AttributeChanges
-    max_delay: Duration | None
-    n_users: int = 0
 
 
 class ChronicleReasoner:
@@ -169,16 +77,16 @@ class ChronicleReasoner:
         Raises:
             PrototypeAlreadyExistsError: The network has the units of a reasoner already.
         """
-        for unit in (_CHANGES, _RECOGNISE):
+        for unit in (FIND_CHANGES, RECOGNISE):
             if unit in network.declarations.units:
                 raise PrototypeAlreadyExistsError(unit)
         self.network = network
         self.interpretation = interpretation or AttributeInterpretation()
         self.settings = settings or RecognitionSettings()
         self._registered: dict[str, Registration] = {}
-        self._changes: list[_Changes] = []
+        self._changes: list[StreamChanges] = []
         self._units: dict[str, ChronicleRecogniser | AttributeChanges] = {}
-        network.provide(Implementations(units={_CHANGES: self._finder, _RECOGNISE: self._unit}))
+        network.provide(Implementations(units={FIND_CHANGES: self._finder, RECOGNISE: self._unit}))
 
     @property
     def chronicles(self) -> Mapping[str, Registration]:
@@ -239,7 +147,7 @@ class ChronicleReasoner:
         removed = [f"stream {registration.label}", f"strmgen {registration.label}"]
         removed += [f"strmgen {each.label}" for each in alone]
         if len(self._registered) == 1:
-            removed += [f"compunit {_CHANGES}", f"compunit {_RECOGNISE}"]
+            removed += [f"compunit {FIND_CHANGES}", f"compunit {RECOGNISE}"]
         self.network.remove(removed)
         for each in registration.changes:
             each.n_users -= 1
@@ -273,27 +181,27 @@ class ChronicleReasoner:
         """Declare what new chronicles need, have it built, and tell it what holds now."""
         declarations: list[Declaration] = []
         if not self._registered:
-            declarations.append(compunit(_EVENTS_SORT, _CHANGES, ANY_SORT))
-            recognise = compunit(RECOGNITIONS, _RECOGNISE, _EVENTS_SORT)
+            declarations.append(compunit(_EVENTS_SORT, FIND_CHANGES, ANY_SORT))
+            recognise = compunit(RECOGNITIONS, RECOGNISE, _EVENTS_SORT)
             declarations.append(replace(recognise, takes_more=True))
-        new: list[_Changes] = []
+        new: list[StreamChanges] = []
         delays = {each.name: each.max_delay for each in self._registered.values()}
         for registration in added:
             for label in registration.streams:
                 changes = self._found(label, registration.settings, new)
                 if changes is None:
                     changes = self._made(label, registration.settings, declared, delays, new)
-                    declarations.append(_declaration_of_changes(changes))
+                    declarations.append(declaration_of_changes(changes))
                 registration.changes.append(changes)
-            registration.max_delay = _open_inputs(registration)
+            registration.open_inputs()
             delays[registration.name] = registration.max_delay
-            declarations += _declarations_of_recognitions(registration)
+            declarations += declarations_of_recognitions(registration)
         self._build(added, new, declarations)
 
     def _build(
         self,
         added: Sequence[Registration],
-        new: Sequence[_Changes],
+        new: Sequence[StreamChanges],
         declarations: Sequence[Declaration],
     ) -> None:
         units: dict[str, ChronicleRecogniser | AttributeChanges] = {}
@@ -312,7 +220,7 @@ class ChronicleReasoner:
                 each.unit.watch(registration.origins_in(each.stream))
         self.network.kernel.change(lambda: self._begin(added, new))
 
-    def _begin(self, added: Iterable[Registration], new: Iterable[_Changes]) -> None:
+    def _begin(self, added: Iterable[Registration], new: Iterable[StreamChanges]) -> None:
         """Let new processes know the values that there are by now."""
         for each in new:
             last = self.network.kernel.generator(Label(each.stream)).last
@@ -325,10 +233,10 @@ class ChronicleReasoner:
                     registration.unit.begin(at, present)
 
     def _found(
-        self, stream_label: str, settings: RecognitionSettings, new: Iterable[_Changes]
-    ) -> _Changes | None:
+        self, stream_label: str, settings: RecognitionSettings, new: Iterable[StreamChanges]
+    ) -> StreamChanges | None:
         """Return the changes in a stream under the policy of some settings, if they are found."""
-        wanted = StreamTerm(label_from(stream_label), _constraints(settings))
+        wanted = StreamTerm(label_from(stream_label), constraints_of(settings))
         return next((each for each in (*self._changes, *new) if each.term == wanted), None)
 
     def _made(
@@ -337,9 +245,9 @@ class ChronicleReasoner:
         settings: RecognitionSettings,
         declared: Declarations,
         delays: Mapping[str, Duration | None],
-        new: list[_Changes],
-    ) -> _Changes:
-        wanted = StreamTerm(label_from(stream_label), _constraints(settings))
+        new: list[StreamChanges],
+    ) -> StreamChanges:
+        wanted = StreamTerm(label_from(stream_label), constraints_of(settings))
         generator = declared.generators.get(stream_label)
         max_delay = policy_of_input(wanted, [] if generator is None else [generator]).max_delay
         of_chronicle = label_from(stream_label)
@@ -348,7 +256,8 @@ class ChronicleReasoner:
         taken = {each.label for each in (*self._changes, *new)} | set(declared.arities)
         labels = (f"changes_{number}" for number in count(1))
         label = next(each for each in labels if each not in taken)
-        changes = _Changes(label, wanted, stream_label, AttributeChanges(stream_label), max_delay)
+        unit = AttributeChanges(stream_label)
+        changes = StreamChanges(label, wanted, stream_label, unit, max_delay)
         new.append(changes)
         return changes
 
@@ -386,31 +295,3 @@ def _ordered(models: Sequence[Model]) -> list[Model]:
         done += ready
         left = [model for model in left if model not in ready]
     return done
-
-
-def _open_inputs(registration: Registration) -> Duration | None:
-    """Tell the process of a chronicle what is known of its inputs; return the largest delay."""
-    delays = [each.max_delay for each in registration.changes]
-    for at, delay in enumerate(delays):
-        registration.unit.order.open(at, max_delay=delay, is_ordered=True)
-    known = [each for each in delays if each is not None]
-    return max(known) if known and len(known) == len(delays) else None
-
-
-def _constraints(settings: RecognitionSettings) -> tuple[Constraint, ...]:
-    if settings.max_delay is None:
-        return (MonotoneOrder(),)
-    return (MonotoneOrder(), MaxDelay(Time(settings.max_delay)))
-
-
-def _declaration_of_changes(changes: _Changes) -> Declaration:
-    unit = application(_CHANGES, [changes.term], [Setting("name", Text(changes.label))])
-    return strmgen(label_of(changes.label), unit)
-
-
-def _declarations_of_recognitions(registration: Registration) -> list[Declaration]:
-    inputs = [term(label_of(each.label)) for each in registration.changes]
-    settings = [Setting("name", Text(registration.name))]
-    recognitions = label_of(RECOGNITIONS, registration.name)
-    unit = application(_RECOGNISE, inputs, settings)
-    return [strmgen(recognitions, unit), stream(recognitions, term(recognitions))]

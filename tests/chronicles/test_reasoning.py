@@ -12,13 +12,13 @@ from chronicles.attributes import AttributeInterpretation
 from chronicles.events import Event, Recognition, event_from_recognition
 from chronicles.models import models_from_chronicles
 from chronicles.parser import parse_chronicles
-from chronicles.reasoning import (
+from chronicles.reasoning import ChronicleReasoner
+from chronicles.recognition import Recogniser
+from chronicles.registering import (
     ChronicleAlreadyRegisteredError,
-    ChronicleReasoner,
     NoSuchChronicleError,
     RecognitionSettings,
 )
-from chronicles.recognition import Recogniser
 from dyknow.errors import LabelInUseError, PrototypeAlreadyExistsError, SpecificationErrors
 from dyknow.kpl.printer import text_from
 from dyknow.streams.policy import Constraint
