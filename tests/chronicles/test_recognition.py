@@ -329,7 +329,7 @@ def test_any_time_of_64_bits_will_do(begin):
     assert recogniser.size() == 0
 
 
-@pytest.mark.parametrize("time", [1 << 63, -(1 << 64)])
+@pytest.mark.parametrize("time", [1 << 64, -(1 << 64)])
 def test_a_time_of_more_than_64_bits_is_refused(time):
     """Nothing has happened then: the clock stays where it is."""
     recogniser = recogniser_of("chronicle c { event(a, t1) }")
@@ -344,7 +344,7 @@ def test_a_window_since_time_zero_has_no_other_end():
     """A chronicle that must begin before some time begins however long before."""
     recogniser = recogniser_of("chronicle c { event(a, t1) t1 <= 5 }")
 
-    assert told(recogniser, *(message("a", t) for t in (-(10**14), 5, 6))) == [(-(10**14),), (5,)]
+    assert told(recogniser, *(message("a", t) for t in (-(10**12), 5, 6))) == [(-(10**12),), (5,)]
 
 
 def test_what_an_event_says_is_believed():
