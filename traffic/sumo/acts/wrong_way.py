@@ -18,8 +18,8 @@ _FASTEST = 20.0
 _ROOM = 25.0
 """Metres that are left between the two then."""
 
-_FOLLOWING = 75.0
-_BEHIND = 25.0
+_FOLLOWING = 50.0
+_BEHIND = 15.0
 """Metres ahead and behind in which nobody may be on the own side, who would be overtaken."""
 
 _WIDE = 1.7
