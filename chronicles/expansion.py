@@ -9,7 +9,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, fields, is_dataclass, replace
 from typing import Any
 
-from chronicles.printer import text_of
+from chronicles.printer import text_of_moment
 from chronicles.syntax import (
     Anything,
     Chronicle,
@@ -221,7 +221,7 @@ class _Expander:
             return
         span = event.span
         moment = Displaced(event.span, event.instant, displacement)
-        name = text_of(moment)
+        name = text_of_moment(event.instant, displacement)
         if displacement.lower != displacement.upper:
             self._n_anonymous[name] = self._n_anonymous.get(name, 0) + 1
             if self._n_anonymous[name] > 1:

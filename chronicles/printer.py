@@ -58,7 +58,7 @@ from chronicles.syntax import (
 from chronicles.wording import RESERVED_WORDS
 from dyknow.time import text_from_duration
 
-__all__ = ["print_chronicles", "text_of"]
+__all__ = ["print_chronicles", "text_of", "text_of_moment"]
 
 _BARE = re.compile(r"[A-Za-z_]\w*|\d+", re.ASCII)
 
@@ -66,6 +66,14 @@ _BARE = re.compile(r"[A-Za-z_]\w*|\d+", re.ASCII)
 def print_chronicles(file: ChronicleFile) -> str:
     """Return the text of *file*, declarations parted by empty lines."""
     return "\n\n".join(text_of(declaration) for declaration in file.declarations) + "\n"
+
+
+def text_of_moment(name: str, displacement: Interval) -> str:
+    """Return the text of a moment that is so much later than an instant."""
+    lower = displacement.lower
+    if lower is not None and lower == displacement.upper:
+        return f"{name}{_offset(lower)}"
+    return f"{name} + {text_of(displacement)}"
 
 
 @singledispatch
@@ -112,9 +120,6 @@ def _(node: Difference) -> str:
 
 @text_of.register
 def _(node: Displaced) -> str:
-    lower = node.interval.lower
-    if lower is not None and lower == node.interval.upper:
-        return f"{node.name}{_offset(lower)}"
     return f"{node.name} + {text_of(node.interval)}"
 
 
@@ -222,7 +227,7 @@ def _(node: Conditional) -> str:
 def _(node: EventAt) -> str:
     moment = node.instant
     if node.displacement is not None:
-        moment = text_of(Displaced(node.span, node.instant, node.displacement))
+        moment = text_of_moment(node.instant, node.displacement)
     return f"event({text_of(node.event_type)}, {moment})"
 
 

@@ -42,12 +42,7 @@ instants = st.builds(syntax.Instant, st.just(AT), moments, durations)
 differences = st.builds(syntax.Difference, st.just(AT), moments, moments, durations)
 limits = st.one_of(st.none(), durations)
 intervals = st.builds(syntax.Interval, st.just(AT), limits, limits)
-displaced = st.builds(
-    syntax.Displaced,
-    st.just(AT),
-    moments,
-    intervals.filter(lambda i: i.lower != i.upper or i.lower is None),
-)
+displaced = st.builds(syntax.Displaced, st.just(AT), moments, intervals)
 lengths = st.builds(syntax.Length, st.just(AT), durations)
 operands = st.one_of(instants, displaced, differences, lengths)
 value_sets = st.builds(syntax.ValueSet, st.just(AT), st.lists(texts, max_size=3).map(tuple))
