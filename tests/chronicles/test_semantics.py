@@ -11,6 +11,7 @@ from chronicles.events import Event, Recognition
 from chronicles.expansion import expand
 from chronicles.models import models_from_chronicles
 from chronicles.parser import parse_chronicles
+from chronicles.prospects import PartialInstance
 from chronicles.recognition import Recogniser
 from chronicles.semantics import Match, matches
 from chronicles.syntax import Chronicle, ChronicleFile, NoEvent, Occurs
@@ -70,9 +71,17 @@ def recognised(
             assert all(clock is None or clock <= one.recognised_at for one in new)
             assert all(one.recognised_at <= time for one in new)
             found += new
+            assert all(is_possible(one, time) for one in recogniser.partial_instances())
         clock = time
-    recogniser.partial_instances()
     return found + recogniser.advance(TimePoint(end))
+
+
+def is_possible(instance: PartialInstance, clock: int) -> bool:
+    """Return whether everything that a partial instance waits for can still come."""
+    return bool(instance.awaited) and all(
+        awaited.latest is None or max(clock, awaited.earliest) <= awaited.latest
+        for awaited in instance.awaited
+    )
 
 
 def check_agreement(text: str, data: st.DataObject) -> None:

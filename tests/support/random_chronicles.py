@@ -128,11 +128,13 @@ def streams(draw: st.DrawFn, asked: Sequence[EventType] = ()) -> list[Event]:
     chosen = {name: draw(VALUE) for name in VARIABLES}
     time = draw(st.sampled_from([0] * 14 + [-4, 1_700_000_000_000, -(10**12)]))
     wanted = [each for each in asked if each.name in SIGNALS]
+    in_turn = draw(st.booleans())
     events = []
-    for _ in range(draw(st.integers(0, 10))):
+    for i in range(draw(st.integers(0, 10))):
         time += draw(st.sampled_from([0, 0, 1, 1, 1, 2, 3]))
-        if wanted and draw(st.integers(0, 3)):
-            made = _asked_for(draw, draw(st.sampled_from(wanted)), chosen)
+        if wanted and draw(st.integers(0, 4)):
+            next_one = wanted[i % len(wanted)] if in_turn else draw(st.sampled_from(wanted))
+            made = _asked_for(draw, next_one, chosen)
         else:
             made = _any_event(draw)
         events.append(replace(made, time=TimePoint(time * MS)))
@@ -152,7 +154,7 @@ def _asked_for(draw: st.DrawFn, wanted: EventType, chosen: Mapping[str, str]) ->
     def value(parameter: Parameter) -> str:
         if isinstance(parameter, Value):
             return parameter.text
-        if isinstance(parameter, Variable) and draw(st.integers(0, 5)):
+        if isinstance(parameter, Variable) and draw(st.integers(0, 8)):
             return chosen.get(parameter.name, "u")
         return draw(VALUE)
 
