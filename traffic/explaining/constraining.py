@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
+from itertools import pairwise
 
 from chronicles.conditions import holds, variables_in
 from chronicles.constraints import INSTANT
@@ -13,7 +14,6 @@ from chronicles.syntax import (
     Displaced,
     Domain,
     Instant,
-    Interval,
     Length,
     Operand,
     Star,
@@ -36,17 +36,65 @@ class _Sum:
     most: int | None
 
 
+@dataclass(frozen=True, slots=True)
+class _Order:
+    """That one sum is at most another one, and less by a gap; nanoseconds.
+
+    A sum with an interval is some length in it: the least of the one side must reach the most of
+    the other.
+    """
+
+    left: _Sum
+    right: _Sum
+    gap: int = 0
+
+    @property
+    def weights(self) -> dict[str, int]:
+        """The instants of the right side without those of the left side."""
+        found = dict(self.right.weights)
+        for name, weight in self.left.weights.items():
+            found[name] = found.get(name, 0) - weight
+        return {name: weight for name, weight in found.items() if weight}
+
+    @property
+    def bound(self) -> int | None:
+        """How much these must come to at least; None if that does not matter."""
+        low, high = self.left.least, self.right.most
+        return None if low is None or high is None else low - high + self.gap
+
+    def value(self, times: Mapping[str, int]) -> int:
+        """Return how much they come to."""
+        return sum(weight * times[name] for name, weight in self.weights.items())
+
+    def holds(self, times: Mapping[str, int]) -> bool:
+        """Return whether it is so."""
+        return self.bound is None or self.value(times) >= self.bound
+
+    def term(self, times: Mapping[str, int]) -> Term | None:
+        """Return the length of time that is bounded, later instants first; None without any."""
+        weights, bound, value = self.weights, self.bound, self.value(times)
+        if bound is None or not weights:
+            return None
+        if value < 0 or (value == 0 and bound < 0):
+            flipped = {name: -weight for name, weight in weights.items()}
+            return Term(text=_text(flipped), ms=_ms(-value), least=None, most=_ms(-bound))
+        return Term(text=_text(weights), ms=_ms(value), least=_ms(bound), most=None)
+
+
 def constraint_explained(statement: Comparison | Within, times: Mapping[str, int]) -> Constraint:
     """Return what a constraint on *times* (nanoseconds) came to."""
+    orders = list(_orders(statement))
     terms: dict[str, Term] = {}
-    for term in _terms(statement, times):
-        known = terms.get(term.text)
-        terms[term.text] = term if known is None else _both(known, term)
+    for order in orders:
+        term = order.term(times)
+        if term is not None:
+            known = terms.get(term.text)
+            terms[term.text] = term if known is None else _both(known, term)
     return Constraint(
         text=text_of(statement),
         terms=list(terms.values()),
         values={},
-        holds=all(_keeps(term) for term in terms.values()),
+        holds=all(order.holds(times) for order in orders),
     )
 
 
@@ -65,22 +113,19 @@ def condition_explained(
     )
 
 
-def _terms(statement: Comparison | Within, times: Mapping[str, int]) -> Iterator[Term]:
+def _orders(statement: Comparison | Within) -> Iterator[_Order]:
+    """Yield what a constraint says of pairs of sums."""
     match statement:
         case Within(_, difference, interval):
-            what = _sum(difference)
-            yield from _at_most(_interval(interval), what, times)
-            yield from _at_most(what, _interval(interval), times)
-        case Comparison(_, operands, orders):
-            sums = [_sum(operand) for operand in operands]
-            for order, left, right in zip(orders, sums, sums[1:], strict=False):
-                gap = INSTANT if order in ("<", ">") else 0
-                if order in (">", ">="):
-                    yield from _at_most(right, left, times, gap)
-                else:
-                    yield from _at_most(left, right, times, gap)
-                if order == "=":
-                    yield from _at_most(right, left, times)
+            what, lengths = _sum(difference), _Sum({}, interval.lower, interval.upper)
+            yield _Order(lengths, what)
+            yield _Order(what, lengths)
+        case Comparison(_, operands, signs):
+            for sign, (left, right) in zip(signs, pairwise(map(_sum, operands)), strict=True):
+                gap = INSTANT if sign in ("<", ">") else 0
+                yield _Order(right, left, gap) if sign in (">", ">=") else _Order(left, right, gap)
+                if sign == "=":
+                    yield _Order(right, left)
 
 
 def _sum(operand: Operand) -> _Sum:
@@ -93,34 +138,6 @@ def _sum(operand: Operand) -> _Sum:
             return _Sum({} if later == earlier else {later: 1, earlier: -1}, offset, offset)
         case Length(_, duration):
             return _Sum({}, duration, duration)
-
-
-def _interval(interval: Interval) -> _Sum:
-    return _Sum({}, interval.lower, interval.upper)
-
-
-def _at_most(left: _Sum, right: _Sum, times: Mapping[str, int], gap: int = 0) -> Iterator[Term]:
-    """Yield what it says that *left* is at most *right*, and less by *gap*.
-
-    A sum with an interval is some length in it: the least of the one side must reach the most of
-    the other.
-    """
-    low, high = left.least, right.most
-    if low is None or high is None:
-        return
-    weights = dict(right.weights)
-    for name, weight in left.weights.items():
-        weights[name] = weights.get(name, 0) - weight
-    weights = {name: weight for name, weight in weights.items() if weight}
-    if not weights:
-        return
-    bound = low - high + gap
-    value = sum(weight * times[name] for name, weight in weights.items())
-    if value < 0 or (value == 0 and bound < 0):
-        flipped = {name: -weight for name, weight in weights.items()}
-        yield Term(text=_text(flipped), ms=_ms(-value), least=None, most=_ms(-bound))
-    else:
-        yield Term(text=_text(weights), ms=_ms(value), least=_ms(bound), most=None)
 
 
 def _text(weights: Mapping[str, int]) -> str:
@@ -138,12 +155,6 @@ def _both(one: Term, other: Term) -> Term:
         ms=one.ms,
         least=max(least, default=None),
         most=min(most, default=None),
-    )
-
-
-def _keeps(term: Term) -> bool:
-    return (term.least is None or term.least <= term.ms) and (
-        term.most is None or term.ms <= term.most
     )
 
 

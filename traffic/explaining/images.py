@@ -17,6 +17,7 @@ from typing import Any, Protocol
 import numpy as np
 import numpy.typing as npt
 
+from dyknow.errors import ProcessError
 from dyknow.kpl.plan import build_network
 from dyknow.streams.process import Reactive
 from dyknow.streams.sample import NO_VALUE, Sample
@@ -91,7 +92,10 @@ def images_again(
             (_OUTPUT,),
         )
         end = TimePoint(known.end)
-        network.kernel.run(end, lambda now: on_progress(now / SECOND, end / SECOND))
+        try:
+            network.kernel.run(end, lambda now: on_progress(now / SECOND, end / SECOND))
+        except ProcessError as error:
+            raise (error.__cause__ or error) from None
     if missing := sorted(set(numbers) - chooser.images.keys()):
         raise ExplanationError(f"'{stream}' has no image {missing[0]} when it is made again")
     return chooser.images
@@ -192,6 +196,6 @@ def _changed(run: KeptRun, time: int) -> str:
     versions = ", ".join(f"{name} {number}" for name, number in run.origin.versions.items())
     return (
         f"the images of '{run.folder}' cannot be made again: at {time / SECOND:.2f} s the "
-        f"vehicles or signals are not those that were filmed. The run was made with {versions}; its "
-        "files may have changed since then"
+        "vehicles or signals are not those that were filmed. The run was made with "
+        f"{versions}; its files may have changed since then"
     )

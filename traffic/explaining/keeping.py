@@ -22,6 +22,7 @@ from dyknow.streams.sample import Sample
 from dyknow.streams.table import Table
 from dyknow.time import TimePoint
 from networks.roads import RoadMap
+from traffic.explaining.arrays import array_of
 from traffic.explaining.columns import (
     Columns,
     changes_kept,
@@ -61,7 +62,13 @@ class _Files:
     def __init__(self, folder: Path, stack: ExitStack) -> None:
         self._writers = {
             name: stack.enter_context(
-                pq.ParquetWriter(folder / f"{name}.parquet", schema, compression="zstd")
+                pq.ParquetWriter(
+                    folder / f"{name}.parquet",
+                    schema,
+                    compression="zstd",
+                    use_dictionary=["stream", "column"],
+                    use_byte_stream_split=_numbers_in(schema),
+                )
             )
             for name, schema in SCHEMAS.items()
         }
@@ -72,21 +79,13 @@ class _Files:
         n = len(columns["valid_time" if "valid_time" in schema.names else "begin"])
         if not n:
             return
-        given = {**columns, "stream": [stream]}
-        arrays = [_array(given.get(field.name), field.type, n) for field in schema]
+        given = {**columns, "stream": stream}
+        arrays = [array_of(given.get(field.name), field.type, n) for field in schema]
         self._writers[name].write_table(pa.Table.from_arrays(arrays, schema=schema))
 
 
-def _array(values: Any, kind: pa.DataType, n: int) -> pa.Array:
-    if values is None:
-        return pa.nulls(n, kind)
-    if pa.types.is_dictionary(kind):
-        names, codes = np.unique(np.asarray(values, dtype=object).astype(str), return_inverse=True)
-        indices = np.broadcast_to(codes.astype(np.int32), n)
-        return pa.DictionaryArray.from_arrays(pa.array(indices), pa.array(names.tolist()))
-    if isinstance(values, np.ndarray):
-        return pa.array(values.astype(kind.to_pandas_dtype(), copy=False), kind)
-    return pa.array(values, kind)
+def _numbers_in(schema: pa.Schema) -> list[str]:
+    return [field.name for field in schema if pa.types.is_floating(field.type)]
 
 
 @dataclass
