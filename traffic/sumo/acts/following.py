@@ -30,6 +30,12 @@ _CATCHING_UP = 2.5
 _STANDING_GAP = 2.0
 """Metres that are kept however slow both drive, if that is less than half of the gap at speed."""
 
+_REACHED = 0.07
+"""How exactly a time gap is reached, seconds."""
+
+_PATIENCE = 12.0
+"""How long a driver tries to reach a time gap, seconds."""
+
 _CHANGE = 0.4
 """How fast a time gap changes, seconds per second."""
 
@@ -132,12 +138,22 @@ class _Row:
             yield
 
     def change_gap(self, wanted: float) -> Iterator[None]:
-        """Let the last one come closer, or fall back, by and by."""
-        while self._time_gap != wanted:
+        """Let the last one come closer, or fall back, by and by, until it has or gives up."""
+        until = self._stage.now + _PATIENCE
+        while self._stage.now < until and not self._has_come_to(wanted):
             self._require_all()
             step = _CHANGE * self._stage.step_length
             self._keep(self._drivers[-1], towards(self._time_gap, wanted, step))
             yield
+
+    def _has_come_to(self, wanted: float) -> bool:
+        ahead, behind = self._drivers[-2:]
+        api = self._stage.api.vehicle
+        leader = api.getLeader(behind.vehicle)
+        if self._time_gap != wanted or not leader or leader[0] != ahead.vehicle:
+            return False
+        gap = leader[1] + api.getMinGap(behind.vehicle)
+        return abs(gap - wanted * self._speed) < _REACHED * self._speed
 
     def _enter(self) -> Generator[None, None, NativeDriver]:
         kind = drawn_type_name(self._act.types, self._generator)
