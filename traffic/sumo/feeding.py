@@ -32,14 +32,15 @@ class FrameFeed:
     def __init__(self, simulation: Simulation, signals: Signals) -> None:
         self.observers: list[Callable[[Frame], None]] = []
         self._simulation = simulation
+        self._current: Frame | None = None
         self._waiting: list[deque[Frame]] = []
         memory = SignalMemory(simulation.lanes, signals)
         self.vehicles: Source = _Part(self, lambda frame: frame.vehicles)
         self.signals: Source = _Part(self, memory.table)
 
     def frames(self) -> Iterator[Frame]:
-        """Yield every frame; each one that asks gets all of them from the next step on."""
-        mine: deque[Frame] = deque()
+        """Yield every frame; who asks late begins with the one that was made last."""
+        mine: deque[Frame] = deque() if self._current is None else deque([self._current])
         self._waiting.append(mine)
         while mine or self._step():
             yield mine.popleft()
@@ -49,6 +50,7 @@ class FrameFeed:
         frame = self._simulation.step()
         if frame is None:
             return False
+        self._current = frame
         for observe in self.observers:
             observe(frame)
         for waiting in self._waiting:
