@@ -199,11 +199,15 @@ class _Expander:
                 case _:
                     self._found.statements.append(_renamed(statement, words))
 
-    def _is_full(self) -> bool:
-        """Return whether nothing more may be put in, and remember it if so."""
+    def _is_full(self, n_inside: int = 0) -> bool:
+        """Return whether nothing more may be put in, and remember it if so.
+
+        Args:
+            n_inside: How many chronicles and constraints are around what would be put in.
+        """
         found = self._found
         is_full = (
-            len(self._path) > DEEPEST
+            n_inside > DEEPEST
             or self._n_events > MOST_EVENTS
             or len(found.statements) > _MOST_STATEMENTS
         )
@@ -243,7 +247,7 @@ class _Expander:
         declaration = self._constraints.get(use.name)
         if declaration is None or use.name in self._path or not _fits(use, declaration):
             return
-        if self._is_full():
+        if self._is_full(len(self._path)):
             return
         names = [parameter.name for parameter in declaration.parameters]
         use = _renamed(use, words)
@@ -260,7 +264,7 @@ class _Expander:
         chronicle = self._chronicles.get(use.name)
         if chronicle is None or use.name in self._path or not _fits_chronicle(use, chronicle):
             return
-        if self._is_full():
+        if self._is_full(len(self._path)):
             return
         number = self._n_anonymous[use.name] = self._n_anonymous.get(use.name, 0) + 1
         prefix = f"{words.prefix}{use.name}{'' if number == 1 else number}."
