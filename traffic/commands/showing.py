@@ -94,6 +94,7 @@ def show_network(summary: MapSummary) -> None:
 
 def _recognitions(result: RunResult) -> Table:
     table = Table(
+        "N",
         "from s",
         "to s",
         "recognised",
@@ -103,8 +104,9 @@ def _recognitions(result: RunResult) -> Table:
         box=SIMPLE_HEAD,
         title="Recognised",
     )
-    for recognition in result.recognitions:
+    for number, recognition in enumerate(result.recognitions, start=1):
         table.add_row(
+            str(number),
             f"{recognition.begin / 1000:.1f}",
             f"{recognition.end / 1000:.1f}",
             escape(recognition.chronicle.replace("_", " ")),
