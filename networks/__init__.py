@@ -4,8 +4,9 @@ Read in this order: `geometry` (polylines), `parts` (a network in plain parts), 
 `topology` (which junctions are crossings, which edges make a link), `graph` (directed roads),
 `turns` (left, right, straight, back), `links` (positions along links), `regions` (areas),
 `markings`, `signals` (where traffic lights are), `surroundings` (what lies beside the roads),
-`roads` (the `RoadMap`), `ahead` (what is ahead of what), `assembling` (from parts to map),
-`checking` and `reading` (SUMO networks), `building` (made-up ones), `errors`.
+`roads` (the `RoadMap`), `ahead` (what is ahead of what), `prediction` (who would touch whom),
+`assembling` (from parts to map), `checking` and `reading` (SUMO networks), `building` (made-up
+ones), `errors`.
 """
 
 from networks.ahead import RoadsAhead

@@ -108,6 +108,7 @@ SORTS: Mapping[str, Callable[[Any], str | None]] = {
     "car_relations": _Tables({**_PAIR, **dict.fromkeys(("behind", "in_front", "close"), _TRUTH)}),
     "headways": _Tables({**_PAIR, "time_gap": _NUMBER, "deviation": _NUMBER, "aside": _NUMBER}),
     "car_following": _Tables({**_PAIR, "follows": _TRUTH, "tailgates": _TRUTH}),
+    "car_dangers": _Tables({**_PAIR, "collision_course": _TRUTH}),
     "car_places": _Tables({"beside_building": _COUNT, "observed": _TRUTH}),
     "car_swings": _Tables({"swing": _COUNT}),
     "events": partial(_fault_of_all, Event),

@@ -65,6 +65,7 @@ from traffic.bundled import data_folder
 from traffic.errors import RequestError
 from traffic.features.angular import AngularRelations
 from traffic.features.changes import Changes
+from traffic.features.danger import CollisionCourses
 from traffic.features.following import Following
 from traffic.features.headways import Headways
 from traffic.features.link_turns import LinkTurns
@@ -78,8 +79,8 @@ from traffic.features.stability import StableFor
 from traffic.features.standing import Standing
 from traffic.features.stop_lines import StopLines
 from traffic.features.swaying import SWINGS, Swaying
-from traffic.features.unfiltered import UnfilteredCars
 from traffic.features.travelling import Travelling
+from traffic.features.unfiltered import UnfilteredCars
 from traffic.world import World
 
 __all__ = [
@@ -432,10 +433,11 @@ def _units(world: World, made: Made) -> dict[str, Any]:
         "CarRelations": partial(CarRelations, world.road_map),
         "UnfilteredCars": partial(UnfilteredCars, world.road_map),
         "AngularRelations": AngularRelations,
-        "Headways": partial(Headways, world.road_map),
         "Travelling": Travelling,
+        "Headways": partial(Headways, world.road_map),
         "Following": Following,
         "Swaying": Swaying,
+        "CollisionCourses": partial(CollisionCourses, world.road_map),
         "BesideBuilding": partial(BesideBuilding, world.road_map),
         "Standing": Standing,
         "StopLines": partial(StopLines, world.road_map),

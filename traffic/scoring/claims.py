@@ -15,10 +15,17 @@ class Claim:
     Attributes:
         kind: The kind of manoeuvre, as the truth calls it.
         place: The arguments that say where, if the truth is to agree about that.
+        is_mutual: Whether the vehicles do it to each other; then their order says nothing, and
+            the truth has them in order of number.
     """
 
     kind: str
     place: tuple[str, ...] = ()
+    is_mutual: bool = False
+
+    def vehicles_of(self, found: Iterable[int]) -> tuple[int, ...]:
+        """Return the vehicles that a recognition is about as the truth has them."""
+        return tuple(sorted(found)) if self.is_mutual else tuple(found)
 
     def place_of(self, recognition: Recognition) -> tuple[str, ...]:
         """Return where a recognition says that it happened."""
@@ -50,6 +57,7 @@ def _turns() -> dict[str, Claim]:
 _EXCEPTIONS: Mapping[str, Claim] = {
     **_turns(),
     "convoy_caught_up": Claim("convoy"),
+    "near_collision": Claim("near_collision", is_mutual=True),
     "parking_beside_building": Claim("parking_beside_building", ("building",)),
     "stop_in_crossing": Claim("stop_in_crossing", ("x",)),
 }

@@ -193,8 +193,8 @@ def _result(recognition: Recognition, truth: dict[str, str] | None) -> Recogniti
 
 def _claim(recognition: Recognition, vehicles: dict[str, int] | None) -> Episode:
     """Return what a recognition says, in the words of the truth."""
-    who = tuple(vehicles.values()) if vehicles is not None else ()
     said = claim_of(recognition.chronicle)
+    who = said.vehicles_of(vehicles.values()) if vehicles is not None else ()
     key = said.kind, who, said.place_of(recognition)
     return Episode(key, recognition.begin, recognition.end)
 

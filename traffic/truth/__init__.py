@@ -2,7 +2,7 @@
 
 Read in this order: `manoeuvres` (what vehicles did, and what finds it), `ground_truth` (all of it
 together), `watchers` (which kinds there are), `turns`, `overtakes`, `following`, `weaving`,
-`parking`, `red_lights`, `standing`, `wrong_way` (the definitions), `stretches` (since when
-something is the case), `places` (where vehicles are on the road map), `visibility` (who was in
-view, and when).
+`parking`, `near_collisions`, `red_lights`, `standing`, `wrong_way` (the definitions), `stretches`
+(since when something is the case), `places` (where vehicles are on the road map), `visibility`
+(who was in view, and when).
 """

@@ -8,6 +8,7 @@ from networks.roads import RoadMap
 from networks.turns import Turn
 from traffic.truth.following import CONVOY, TAILGATING, FollowedWatcher, FollowingWatcher
 from traffic.truth.manoeuvres import Watcher
+from traffic.truth.near_collisions import NearCollisionWatcher
 from traffic.truth.overtakes import OvertakeWatcher
 from traffic.truth.parking import ParkingWatcher
 from traffic.truth.red_lights import RedLightWatcher
@@ -55,6 +56,7 @@ WATCHERS: Mapping[str, Definition] = {
     "followed": Definition(FollowedWatcher.on),
     "weaving": Definition(WeavingWatcher.on),
     "parking_beside_building": Definition(ParkingWatcher),
+    "near_collision": Definition(NearCollisionWatcher),
     "red_light": Definition(RedLightWatcher.on),
     "stop_in_crossing": Definition(StandingWatcher, part=STANDING),
     "wrong_way": Definition(WrongWayWatcher, part=WRONG_WAY),

@@ -2,9 +2,9 @@
 
 Read in this order: `base` (what all acts have in common), then the families: `driving` (at a
 speed; halting), `weaving` (swaying, and going around something), `following` (close behind, in a
-row, wherever another turns), `parking`, `crossings` (red lights, halting inside), `wrong_way`. A
-new kind is a class in its family's module and a line in `ACTS` and `AnyAct` here, and a
-performance in `traffic.sumo.acts`.
+row, wherever another turns), `parking`, `danger` (too near to others), `crossings` (red lights,
+halting inside), `wrong_way`. A new kind is a class in its family's module and a line
+in `ACTS` and `AnyAct` here, and a performance in `traffic.sumo.acts`.
 """
 
 from collections.abc import Mapping
@@ -14,6 +14,7 @@ from pydantic import Field
 
 from traffic.scenarios.acts.base import Act
 from traffic.scenarios.acts.crossings import CreepOverLine, HaltInCrossing, RunRedLight
+from traffic.scenarios.acts.danger import BrakeLate, CrossWithRoom, CutOff
 from traffic.scenarios.acts.driving import Drive, Halt
 from traffic.scenarios.acts.following import CloseUp, Column, Tail, Tailgate
 from traffic.scenarios.acts.parking import Park
@@ -35,7 +36,10 @@ AnyAct = Annotated[
     | RunRedLight
     | CreepOverLine
     | HaltInCrossing
-    | DriveOpposite,
+    | DriveOpposite
+    | CutOff
+    | CrossWithRoom
+    | BrakeLate,
     Field(discriminator="kind"),
 ]
 """One of the acts, told apart by its `kind`."""
@@ -54,5 +58,8 @@ ACTS: Mapping[str, type[Act]] = {
     "creep_over_line": CreepOverLine,
     "halt_in_crossing": HaltInCrossing,
     "drive_opposite": DriveOpposite,
+    "cut_off": CutOff,
+    "cross_with_room": CrossWithRoom,
+    "brake_late": BrakeLate,
 }
 """The class of each kind."""

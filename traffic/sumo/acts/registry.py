@@ -8,12 +8,14 @@ import numpy as np
 
 from traffic.scenarios.acts import Act
 from traffic.scenarios.acts.crossings import CreepOverLine, HaltInCrossing, RunRedLight
+from traffic.scenarios.acts.danger import BrakeLate, CrossWithRoom, CutOff
 from traffic.scenarios.acts.driving import Drive, Halt
 from traffic.scenarios.acts.following import CloseUp, Column, Tail, Tailgate
 from traffic.scenarios.acts.parking import Park
 from traffic.scenarios.acts.weaving import Swerve, Weave
 from traffic.scenarios.acts.wrong_way import DriveOpposite
 from traffic.sumo.acts.crossings import creep_over_line, halt_in_crossing, run_red_light
+from traffic.sumo.acts.danger import brake_late, cross_with_room, cut_off
 from traffic.sumo.acts.driving import drive, halt
 from traffic.sumo.acts.following import close_up, column, tail, tailgate
 from traffic.sumo.acts.parking import park
@@ -52,4 +54,7 @@ _PERFORM: Mapping[type[Act], Perform] = {
     CreepOverLine: _script(creep_over_line),
     HaltInCrossing: _script(halt_in_crossing),
     DriveOpposite: _script(drive_opposite),
+    CutOff: _script(cut_off),
+    CrossWithRoom: _script(cross_with_room),
+    BrakeLate: _script(brake_late),
 }
