@@ -3,7 +3,7 @@
 Read in this order: `base` (what all acts have in common), then the families: `driving` (at a
 speed; halting), `weaving` (swaying, and going around something), `following` (close behind, in a
 row, wherever another turns), `parking`, `danger` (too near to others), `crossings` (red lights,
-halting inside), `wrong_way`. A new kind is a class in its family's module and a line
+halting inside), `wrong_way`, `overtaking`. A new kind is a class in its family's module and a line
 in `ACTS` and `AnyAct` here, and a performance in `traffic.sumo.acts`.
 """
 
@@ -17,6 +17,7 @@ from traffic.scenarios.acts.crossings import CreepOverLine, HaltInCrossing, RunR
 from traffic.scenarios.acts.danger import BrakeLate, CrossWithRoom, CutOff
 from traffic.scenarios.acts.driving import Drive, Halt
 from traffic.scenarios.acts.following import CloseUp, Column, Tail, Tailgate
+from traffic.scenarios.acts.overtaking import AbortOvertake, DriveBeside, Overtake
 from traffic.scenarios.acts.parking import Park
 from traffic.scenarios.acts.weaving import Swerve, Weave
 from traffic.scenarios.acts.wrong_way import DriveOpposite
@@ -39,7 +40,10 @@ AnyAct = Annotated[
     | DriveOpposite
     | CutOff
     | CrossWithRoom
-    | BrakeLate,
+    | BrakeLate
+    | Overtake
+    | AbortOvertake
+    | DriveBeside,
     Field(discriminator="kind"),
 ]
 """One of the acts, told apart by its `kind`."""
@@ -61,5 +65,8 @@ ACTS: Mapping[str, type[Act]] = {
     "cut_off": CutOff,
     "cross_with_room": CrossWithRoom,
     "brake_late": BrakeLate,
+    "overtake": Overtake,
+    "abort_overtake": AbortOvertake,
+    "drive_beside": DriveBeside,
 }
 """The class of each kind."""

@@ -11,6 +11,7 @@ from traffic.scenarios.acts.crossings import CreepOverLine, HaltInCrossing, RunR
 from traffic.scenarios.acts.danger import BrakeLate, CrossWithRoom, CutOff
 from traffic.scenarios.acts.driving import Drive, Halt
 from traffic.scenarios.acts.following import CloseUp, Column, Tail, Tailgate
+from traffic.scenarios.acts.overtaking import AbortOvertake, DriveBeside, Overtake
 from traffic.scenarios.acts.parking import Park
 from traffic.scenarios.acts.weaving import Swerve, Weave
 from traffic.scenarios.acts.wrong_way import DriveOpposite
@@ -18,6 +19,7 @@ from traffic.sumo.acts.crossings import creep_over_line, halt_in_crossing, run_r
 from traffic.sumo.acts.danger import brake_late, cross_with_room, cut_off
 from traffic.sumo.acts.driving import drive, halt
 from traffic.sumo.acts.following import close_up, column, tail, tailgate
+from traffic.sumo.acts.overtaking import abort_overtake, drive_beside, overtake
 from traffic.sumo.acts.parking import park
 from traffic.sumo.acts.performance import Performance, Script
 from traffic.sumo.acts.stage import Stage
@@ -57,4 +59,7 @@ _PERFORM: Mapping[type[Act], Perform] = {
     CutOff: _script(cut_off),
     CrossWithRoom: _script(cross_with_room),
     BrakeLate: _script(brake_late),
+    Overtake: _script(overtake),
+    AbortOvertake: _script(abort_overtake),
+    DriveBeside: _script(drive_beside),
 }
