@@ -30,13 +30,13 @@ _CATCHING_UP = 2.5
 _STANDING_GAP = 2.0
 """Metres that are kept however slow both drive, if that is less than half of the gap at speed."""
 
-_REACHED = 0.07
-"""How exactly a time gap is reached, seconds."""
+_HASTE = 0.6
+"""Who comes close drives as if to come closer still, by this share of the time gap."""
 
 _PATIENCE = 12.0
 """How long a driver tries to reach a time gap, seconds."""
 
-_CHANGE = 0.4
+_CHANGE = 0.6
 """How fast a time gap changes, seconds per second."""
 
 
@@ -66,9 +66,9 @@ def close_up(act: CloseUp, stage: Stage, generator: np.random.Generator) -> Iter
         yield from row.come_in([distance])
         while True:
             yield from row.stay(_seconds(act.pause, generator))
-            yield from row.change_gap(_seconds(act.time_gap, generator))
+            yield from row.close_in(_seconds(act.time_gap, generator))
             yield from row.stay(_seconds(act.moment, generator))
-            yield from row.change_gap(distance)
+            yield from row.fall_back(distance)
 
 
 def tail(act: Tail, stage: Stage, generator: np.random.Generator) -> Iterator[None]:
@@ -137,23 +137,36 @@ class _Row:
             self._require_all()
             yield
 
-    def change_gap(self, wanted: float) -> Iterator[None]:
-        """Let the last one come closer, or fall back, by and by, until it has or gives up."""
+    def close_in(self, wanted: float) -> Iterator[None]:
+        """Let the last one come close quickly, until it has or gives up."""
         until = self._stage.now + _PATIENCE
-        while self._stage.now < until and not self._has_come_to(wanted):
-            self._require_all()
-            step = _CHANGE * self._stage.step_length
-            self._keep(self._drivers[-1], towards(self._time_gap, wanted, step))
+        while self._stage.now < until and self._actual_gap() > wanted:
+            self._change(_HASTE * wanted)
             yield
+        self._keep(self._drivers[-1], wanted)
 
-    def _has_come_to(self, wanted: float) -> bool:
+    def fall_back(self, wanted: float) -> Iterator[None]:
+        """Let the last one fall back by and by, until it has or gives up."""
+        until = self._stage.now + _PATIENCE
+        while self._stage.now < until and self._actual_gap() < wanted:
+            self._change(wanted)
+            yield
+        self._keep(self._drivers[-1], wanted)
+
+    def _change(self, wanted: float) -> None:
+        """Bring the time gap that the last one keeps a step nearer to what is wanted."""
+        self._require_all()
+        step = _CHANGE * self._stage.step_length
+        self._keep(self._drivers[-1], towards(self._time_gap, wanted, step))
+
+    def _actual_gap(self) -> float:
+        """Return the time gap of the last one at the speed of the row, seconds."""
+        self._require_all()
         ahead, behind = self._drivers[-2:]
         api = self._stage.api.vehicle
-        leader = api.getLeader(behind.vehicle)
-        if self._time_gap != wanted or not leader or leader[0] != ahead.vehicle:
-            return False
-        gap = leader[1] + api.getMinGap(behind.vehicle)
-        return abs(gap - wanted * self._speed) < _REACHED * self._speed
+        (x, y), (a, b) = behind.position, ahead.position
+        gap = float(np.hypot(a - x, b - y)) - float(api.getLength(ahead.vehicle))
+        return gap / self._speed
 
     def _enter(self) -> Generator[None, None, NativeDriver]:
         kind = drawn_type_name(self._act.types, self._generator)
