@@ -111,6 +111,12 @@ SORTS: Mapping[str, Callable[[Any], str | None]] = {
     "car_dangers": _Tables({**_PAIR, "collision_course": _TRUTH}),
     "car_places": _Tables({"beside_building": _COUNT, "observed": _TRUTH}),
     "car_swings": _Tables({"swing": _COUNT}),
+    "car_acts": _Tables(
+        {"recognised": _TRUTH, "n_recognised": _COUNT, "recognised_at": _COUNT, "present": _TRUTH}
+    ),
+    "reckless_drivers": _Tables(
+        {"car": _COUNT, "since": _COUNT, "n_acts": _COUNT, "last_act_at": _COUNT}
+    ),
     "events": partial(_fault_of_all, Event),
     "recognitions": partial(_fault_of_all, Recognition),
 }
