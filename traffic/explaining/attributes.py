@@ -14,7 +14,7 @@ from traffic.explaining.changing import ABSENT
 from traffic.explaining.explanation import Change, FactEvent, Provenance, ValueChange
 from traffic.explaining.kept import KeptRun, records_of
 from traffic.explaining.matching import fact_of
-from traffic.explaining.symbols import id_of
+from traffic.explaining.symbols import id_of, sort_of_symbol
 
 __all__ = ["Attributes", "Steps"]
 
@@ -183,13 +183,22 @@ class Attributes:
         """Return the changes of a column of one stream for some objects, in order of time."""
         rows = self._changes
         rows = rows[(rows["stream"] == label) & (rows["column"] == column)]
-        ids = [id_of(argument) for argument in arguments]
+        ids = [self._id(label, argument) for argument in arguments]
         if None in ids or not 1 <= len(ids) <= 2:  # noqa: PLR2004, an object or a pair
             return rows.iloc[:0]
         names = ["id"] if len(ids) == 1 else ["first", "second"]
         for name, one in zip(names, ids, strict=True):
             rows = rows[(rows[name] == one).fillna(value=False).astype(bool)]
         return rows.sort_values("valid_time", kind="stable")
+
+    def _id(self, label: str, argument: str) -> int | None:
+        """Return the id of what is called *argument* in a stream; None if it is no object."""
+        described = self._run.description
+        names = described.vocabularies.get(described.sorts.get(label, ""), [])
+        if argument in names:
+            return names.index(argument)
+        is_known = sort_of_symbol(argument) in described.sorts.values()
+        return id_of(argument) if is_known else None
 
     def _value_change(self, row: pd.Series) -> ValueChange:
         label, column = str(row["stream"]), str(row["column"])

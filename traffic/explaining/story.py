@@ -78,8 +78,8 @@ def story_of(walker: Walker, told: RecognitionExplanation) -> Story:
     """Return what a picture of an explained recognition shows."""
     margin = max(_LEAST_MARGIN, _SHARE * (told.end - told.begin))
     reach = told.begin - max(_REACH, told.end - told.begin)
-    about_objects = {each.event.time for each in told.events if each.objects}
-    near = [time for time in about_objects if time >= reach]
+    changed = [each for each in told.events if each.objects or each.event.before is not None]
+    near = [each.event.time for each in changed if each.event.time >= reach]
     begin = max(min([told.begin, *near]) - margin, 0.0)
     end = max([told.end, told.recognised_at, *near]) + margin
     instants: dict[float, list[str]] = {}
@@ -88,12 +88,7 @@ def story_of(walker: Walker, told: RecognitionExplanation) -> Story:
         shown = instants if time >= begin and time >= reach else earlier
         shown.setdefault(time, []).append(name)
     bands = list(_bands(walker, told))
-    symbols = {each.symbol for each in told.objects}
-    moving = [
-        band
-        for band in bands
-        if _is_telling(band, begin if symbols & set(band.steps.arguments) else told.begin, end)
-    ]
+    moving = [band for band in bands if _is_telling(band, begin, end)]
     return Story(
         begin=begin,
         end=end,
@@ -158,8 +153,8 @@ def _keys_counted(counted: Counted) -> list[tuple[str, tuple[str, ...]]]:
 
 
 def _is_telling(band: Band, begin: float, end: float) -> bool:
-    """Return whether anything happened to an attribute between two times."""
-    return any(begin <= time / MILLISECOND <= end for time in band.steps.times)
+    """Return whether an attribute changed between two times; a fact said at 0 is no change."""
+    return any(begin <= time / MILLISECOND <= end and time > 0 for time in band.steps.times)
 
 
 def _constant(band: Band, end: float) -> str:

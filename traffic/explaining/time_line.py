@@ -28,6 +28,9 @@ _LETTERS = 38
 _BAR = 0.44
 _RAW = 0.12
 _FALSE = ("false", None)
+_LIGHTS = {"red": "#d64545", "yellow": "#e8b923", "green": "#3c9d5f"}
+"""What signals show is drawn as they show it."""
+
 _SHADE_COUNTED = "#3c9d5f"
 _SHADE_FORBIDDEN = "#c0453c"
 _LETTER_SHARE = 0.0078
@@ -101,6 +104,7 @@ def _draw_span(
         text, ink = ("" if value == "false" else value.replace("_", " ")), FAINT
         raised = 0.17
     else:
+        colour = _LIGHTS.get(value, colour)
         bar = Rectangle(
             (first, low), width, _BAR, facecolor=colour, edgecolor="white", lw=1.0, zorder=3
         )
