@@ -35,11 +35,13 @@ class Surroundings:
         names: Of the buildings.
         buildings: shape (b,), shapely polygons.
         parking: shape (p,), shapely polygons.
+        file: Where they were read from, if they were.
     """
 
     names: tuple[str, ...] = ()
     buildings: Shapes = field(default_factory=lambda: np.empty(0, dtype=np.object_))
     parking: Shapes = field(default_factory=lambda: np.empty(0, dtype=np.object_))
+    file: Path | None = None
 
     def outlines(self) -> list[Points]:
         """Return the outlines of the buildings, each shape (k, 2), metres."""
@@ -108,6 +110,7 @@ def read_surroundings(network: Path) -> Surroundings:
         tuple(reader.buildings),
         np.array(list(reader.buildings.values()), dtype=np.object_),
         np.array(reader.parking, dtype=np.object_),
+        path,
     )
 
 

@@ -121,7 +121,7 @@ class MonitoringSystem:
         implementations: What its symbols stand for.
         network: The network.
         structures: Which symbol was linked to which objects, down to the percepts.
-        files: That units have read, such as chronicles.
+        files: That units have read, such as chronicles, and what lies beside the roads.
         chronicles: Names of the chronicles that can be recognised.
     """
 
@@ -141,7 +141,8 @@ class MonitoringSystem:
             self.specification, self.implementations, parameters, outputs
         )
         self.structures = ObjectLinkageStructures(made.histories)
-        self.files = tuple(dict.fromkeys(made.files))
+        beside = world.road_map.surroundings.file
+        self.files = tuple(dict.fromkeys([*made.files, *([beside] if beside else [])]))
         self.chronicles = tuple(dict.fromkeys(made.chronicles))
 
 
