@@ -48,7 +48,7 @@ class RecognitionMarks:
 
     Args:
         arguments: Names of parameters of chronicles, without their mark, separated by spaces.
-        chronicles: Names of the chronicles that count, separated by spaces; all if there are none.
+        chronicles: Names of the chronicles that count; all if there are none.
         max_delay: How long after its valid time a recognition may arrive.
         remember: How long an object is known after it has left.
 
@@ -60,7 +60,7 @@ class RecognitionMarks:
         self,
         *,
         arguments: str,
-        chronicles: str = "",
+        chronicles: tuple[str, ...] = (),
         max_delay: Duration | None = None,
         remember: Duration = _NOT_AT_ALL,
     ) -> None:
@@ -68,7 +68,7 @@ class RecognitionMarks:
         self._arguments = tuple(arguments.split())
         if not self._arguments:
             raise ValueError("expected at least one name of a parameter in 'arguments'")
-        self._chronicles = frozenset(chronicles.split())
+        self._chronicles = frozenset(chronicles)
         self._max_delay = max_delay
         self._remember = remember
         self._order = InputOrder(max_delay, with_equals=True)

@@ -91,7 +91,7 @@ def test_with_a_largest_delay_no_heartbeat_is_needed():
 
 def test_only_some_arguments_and_chronicles_count():
     """Arguments of other names, other chronicles and unknown objects mark nothing."""
-    unit = RecognitionMarks(arguments="car1 c", chronicles="act", max_delay=Duration(0))
+    unit = RecognitionMarks(arguments="car1 c", chronicles=("act",), max_delay=Duration(0))
     made = (
         _recognition(100, "car1", name="car1"),
         _recognition(100, "car2", name="car2"),
