@@ -9,9 +9,9 @@ from traffic.truth.manoeuvres import TrueManoeuvre
 from traffic.truth.places import TruePlaces
 from traffic.truth.stretches import Stretch, Stretches
 
-__all__ = ["STANDING", "StandingWatcher"]
+__all__ = ["StandingWatcher"]
 
-STANDING = Duration(5 * SECOND)
+_STANDING = Duration(5 * SECOND)
 """How long one stands at least."""
 
 _RESTS = 0.3
@@ -58,5 +58,5 @@ class StandingWatcher:
                 "stop_in_crossing", (vehicle,), (self._map.crossings[crossing],), begin, end
             )
             for (vehicle, crossing), begin, end in stretches
-            if end - begin >= STANDING
+            if end - begin >= _STANDING
         ]

@@ -6,16 +6,18 @@ from dataclasses import dataclass
 from dyknow.time import SECOND, Duration
 from networks.roads import RoadMap
 from networks.turns import Turn
+from traffic.truth.aborted_overtakes import AbortedOvertakeWatcher
+from traffic.truth.facing_traffic import FacingTrafficWatcher
 from traffic.truth.following import CONVOY, TAILGATING, FollowedWatcher, FollowingWatcher
 from traffic.truth.manoeuvres import Watcher
 from traffic.truth.near_collisions import NearCollisionWatcher
 from traffic.truth.overtakes import OvertakeWatcher
 from traffic.truth.parking import ParkingWatcher
 from traffic.truth.red_lights import RedLightWatcher
-from traffic.truth.standing import STANDING, StandingWatcher
+from traffic.truth.standing import StandingWatcher
 from traffic.truth.turns import TurnWatcher
 from traffic.truth.weaving import WeavingWatcher
-from traffic.truth.wrong_way import WRONG_WAY, WrongWayWatcher
+from traffic.truth.wrong_way import WrongWayWatcher
 
 __all__ = ["WATCHERS", "Definition"]
 
@@ -51,6 +53,10 @@ WATCHERS: Mapping[str, Definition] = {
     "overtake": Definition(OvertakeWatcher.on),
     "overtake_left": Definition(OvertakeWatcher.on),
     "overtake_right": Definition(OvertakeWatcher.on),
+    "overtake_aborted": Definition(AbortedOvertakeWatcher.on),
+    "overtake_wrong_side": Definition(OvertakeWatcher.on),
+    "overtake_facing_traffic": Definition(FacingTrafficWatcher),
+    "overtake_again_and_again": Definition(AbortedOvertakeWatcher.on),
     "tailgating": Definition(FollowingWatcher, part=TAILGATING),
     "convoy": Definition(FollowingWatcher, part=CONVOY),
     "followed": Definition(FollowedWatcher.on),
@@ -58,7 +64,7 @@ WATCHERS: Mapping[str, Definition] = {
     "parking_beside_building": Definition(ParkingWatcher),
     "near_collision": Definition(NearCollisionWatcher),
     "red_light": Definition(RedLightWatcher.on),
-    "stop_in_crossing": Definition(StandingWatcher, part=STANDING),
-    "wrong_way": Definition(WrongWayWatcher, part=WRONG_WAY),
+    "stop_in_crossing": Definition(StandingWatcher),
+    "wrong_way": Definition(WrongWayWatcher),
 }
 """By kind, in the order in which scores are shown."""

@@ -12,9 +12,9 @@ from traffic.truth.manoeuvres import TrueManoeuvre
 from traffic.truth.places import TruePlaces
 from traffic.truth.stretches import Stretch, Stretches
 
-__all__ = ["WRONG_WAY", "WrongWayWatcher"]
+__all__ = ["WrongWayWatcher"]
 
-WRONG_WAY = Duration(5 * SECOND)
+_WRONG_WAY = Duration(5 * SECOND)
 """How long one drives against the direction at least."""
 
 _AGAINST = math.cos(math.radians(120.0))
@@ -87,5 +87,5 @@ class WrongWayWatcher:
         return [
             TrueManoeuvre("wrong_way", (vehicle,), (), begin, end)
             for vehicle, begin, end in stretches
-            if end - begin >= WRONG_WAY and vehicle not in self._passing
+            if end - begin >= _WRONG_WAY and vehicle not in self._passing
         ]
