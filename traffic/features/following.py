@@ -82,11 +82,11 @@ class Following(Reactive):
         (sample,) = inputs
         headways: Table = sample.value
         self._state.align(headways.ids)
-        is_next = self._next_ahead(headways)
         speed = headways["speed"]
         slower = np.minimum(speed, headways["speed_of_second"])
         time_gap, margin = headways["time_gap"], self._certainty * headways["deviation"]
         at_least, at_most = time_gap - margin, time_gap + margin
+        is_next = self._next_ahead(headways, at_least <= _SLACK * self._near)
         self._hold(
             "follows",
             is_next & (at_most <= self._near) & (slower > self._moving),
@@ -101,8 +101,8 @@ class Following(Reactive):
         columns = {"first": headways["first"], "second": headways["second"], **relations}
         yield Sample(Table("following", headways.ids, columns), sample.valid_time, now)
 
-    def _next_ahead(self, headways: Table) -> Truths:
-        """Return in which pairs the second car is the next one on the lane of the first."""
+    def _next_ahead(self, headways: Table, asked: Truths) -> Truths:
+        """Return in which of the pairs asked for the second car is the next one on the lane."""
         aside, margin = headways["aside"], self._certainty * headways["aside_deviation"]
         self._hold(
             "same_lane",
@@ -110,20 +110,24 @@ class Following(Reactive):
             aside - margin <= _SLACK * self._offset,
         )
         (rows,) = np.nonzero(self._state["same_lane"])
-        is_next = self._state["same_lane"].copy()
-        is_next[rows] = ~_someone_between(headways.select(rows))
+        is_next = self._state["same_lane"] & asked
+        is_next[rows] &= ~_someone_between(headways.select(rows), asked[rows])
         return is_next
 
     def _hold(self, name: str, begins: Truths, stays: Truths) -> None:
         self._state[name] = begins | (self._state[name] & stays)
 
 
-def _someone_between(headways: Table) -> Truths:
-    """Return on the way between which cars a third one drives."""
+def _someone_between(headways: Table, asked: Truths) -> Truths:
+    """Return in which of the pairs asked for a third car drives on the way between the two."""
     first, second, ahead = headways["first"], headways["second"], headways["ahead"]
+    cars, car = np.unique(first, return_inverse=True)
+    reach = np.zeros(len(cars))
+    np.maximum.at(reach, car[asked], ahead[asked])
+    (legs,) = np.nonzero(ahead <= reach[car] + _DETOUR)  # to cars that may be in between
     order = np.argsort(first, kind="stable")
-    begin, end = (np.searchsorted(first[order], second, side=side) for side in ("left", "right"))
-    near = np.repeat(np.arange(len(first)), end - begin)  # from the first car to one in between
+    begin, end = (np.searchsorted(first[order], second[legs], side=s) for s in ("left", "right"))
+    near = np.repeat(legs, end - begin)
     far = order[group_ranges(begin, end - begin)]  # from there on
     whole = positions_of(pair_id(first[near], second[far]), headways.ids)
     on_way = (whole >= 0) & (ahead[near] + ahead[far] <= ahead[whole] + _DETOUR)
