@@ -105,7 +105,7 @@ class CollisionCourses(Reactive):
             self._roads, self._bodies(cars), (first[rows], second[rows]), self._times
         )
         limit = np.where(aligned[rows], self._following, self._horizon)
-        collide[rows] = touched <= limit
+        collide[rows] = touched <= limit + _STEP / 2
         return collide
 
     def _bodies(self, cars: Table) -> Bodies:

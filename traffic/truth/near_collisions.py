@@ -15,7 +15,8 @@ __all__ = ["NearCollisionWatcher"]
 
 _HORIZON = 1.0
 _FOLLOWING = 0.85
-_TIMES = np.arange(0.0, _HORIZON + 0.025, 0.05)
+_STEP = 0.05
+_TIMES = np.arange(0.0, _HORIZON + _STEP / 2, _STEP)
 _CLOSING = 4.0
 _MOVING = 1.0
 _ALIGNED = 0.8
@@ -83,7 +84,7 @@ class NearCollisionWatcher:
         length, width = vehicles["length"], vehicles["width"]
         bodies = Bodies(road, places.s[rows], places.d[rows], speed, length, width)
         touched = first_touch(self._map, bodies, pairs, _TIMES)
-        soon = touched <= np.where(aligned[asked], _FOLLOWING, _HORIZON)
+        soon = touched <= np.where(aligned[asked], _FOLLOWING, _HORIZON) + _STEP / 2
         ids = np.sort(np.column_stack([vehicles.ids[each[soon]] for each in pairs]), axis=1)
         return [(one, other) for one, other in ids.tolist()]
 
