@@ -55,9 +55,11 @@ def draw(walker: Walker, explanation: Explanation, on_progress: OnProgress) -> F
     frame_height = min(frame_width / (4 / 3), 4.2)
     height = _HEAD + 0.3 + frame_height + _GAP + rows * _ROW + 0.3 + _FOOT
     figure = Figure(figsize=(_WIDTH, height), facecolor=PAPER)
+    symbols = dict.fromkeys(each.symbol for each in told.objects)
+    symbols |= dict.fromkeys(seen.symbol for frame in story.frames for seen in frame.seen)
     look = Look(
         objects=walker.objects,
-        colours=colours_of([each.symbol for each in told.objects]),
+        colours=colours_of(list(symbols)),
         road_map=walker.road_map,
         camera=walker.camera if images else None,
     )
@@ -74,8 +76,9 @@ def draw(walker: Walker, explanation: Explanation, on_progress: OnProgress) -> F
             draw_map(axes, frame, window, look)
     low = _FOOT + 0.3
     span = (_WIDTH - _SIDE - _NAMES) / _WIDTH
-    axes = figure.add_axes((_NAMES / _WIDTH, low / height, span, rows * _ROW / height))
-    draw_time_line(axes, story, look.colours)
+    if rows:
+        axes = figure.add_axes((_NAMES / _WIDTH, low / height, span, rows * _ROW / height))
+        draw_time_line(axes, story, look.colours)
     _write(figure, explanation, story, remark)
     return figure
 

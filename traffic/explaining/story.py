@@ -79,7 +79,9 @@ def story_of(walker: Walker, told: RecognitionExplanation) -> Story:
     margin = max(_LEAST_MARGIN, _SHARE * (told.end - told.begin))
     reach = told.begin - max(_REACH, told.end - told.begin)
     changed = [each for each in told.events if each.objects or each.event.before is not None]
-    near = [each.event.time for each in changed if each.event.time >= reach]
+    times = [each.event.time for each in changed]
+    below = [each.recognition for each in told.events if each.recognition is not None]
+    near = [time for time in (*times, *(each.begin for each in below)) if time >= reach]
     begin = max(min([told.begin, *near]) - margin, 0.0)
     end = max([told.end, told.recognised_at, *near]) + margin
     instants: dict[float, list[str]] = {}
@@ -102,7 +104,8 @@ def story_of(walker: Walker, told: RecognitionExplanation) -> Story:
 
 def _frames(walker: Walker, told: RecognitionExplanation, begin: float) -> list[Frame]:
     """Return frames at the events, no more than fit, with some between if they are few."""
-    frames = [frame for frame in told.frames if frame.time >= begin and frame.seen]
+    every = {frame.time: frame for frame in _frames_below(told)}
+    frames = [frame for time, frame in sorted(every.items()) if time >= begin and frame.seen]
     while len(frames) > _MOST_FRAMES:
         between = range(1, len(frames) - 1)
         least = min(between, key=lambda at: frames[at + 1].time - frames[at - 1].time)
@@ -117,6 +120,14 @@ def _frames(walker: Walker, told: RecognitionExplanation, begin: float) -> list[
         middle = round((frames[at].time + widest / 2) * MILLISECOND)
         frames[at + 1 : at + 1] = walker.frames.frames({middle: []}, symbols)
     return frames
+
+
+def _frames_below(told: RecognitionExplanation) -> Iterator[Frame]:
+    """Yield the frames of the recognitions that made one, and its own."""
+    for event in told.events:
+        if event.recognition is not None:
+            yield from _frames_below(event.recognition)
+    yield from told.frames
 
 
 def _bands(walker: Walker, told: RecognitionExplanation) -> Iterator[Band]:
@@ -154,7 +165,10 @@ def _keys_counted(counted: Counted) -> list[tuple[str, tuple[str, ...]]]:
 
 def _is_telling(band: Band, begin: float, end: float) -> bool:
     """Return whether an attribute changed between two times; a fact said at 0 is no change."""
-    return any(begin <= time / MILLISECOND <= end and time > 0 for time in band.steps.times)
+    if band.is_chronicle:
+        return bool(band.events)
+    times = (time / MILLISECOND for time in band.steps.times if time > 0)
+    return any(begin <= time <= end for time in times)
 
 
 def _constant(band: Band, end: float) -> str:
