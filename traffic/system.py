@@ -70,6 +70,7 @@ from traffic.features.following import Following
 from traffic.features.headways import Headways
 from traffic.features.link_turns import LinkTurns
 from traffic.features.moving import Moving
+from traffic.features.oncoming import FacingTraffic
 from traffic.features.pairs import NearPairs
 from traffic.features.parking import BesideBuilding
 from traffic.features.positions import NoisyPositions
@@ -435,6 +436,7 @@ def _units(world: World, made: Made) -> dict[str, Any]:
         "UnfilteredCars": partial(UnfilteredCars, world.road_map),
         "AngularRelations": AngularRelations,
         "Travelling": Travelling,
+        "FacingTraffic": partial(FacingTraffic, world.road_map),
         "Headways": partial(Headways, world.road_map),
         "Following": Following,
         "Swaying": Swaying,

@@ -58,6 +58,7 @@ _EXCEPTIONS: Mapping[str, Claim] = {
     **_turns(),
     "convoy_caught_up": Claim("convoy"),
     "near_collision": Claim("near_collision", is_mutual=True),
+    "overtake_predicted": Claim("overtake"),
     "parking_beside_building": Claim("parking_beside_building", ("building",)),
     "stop_in_crossing": Claim("stop_in_crossing", ("x",)),
 }

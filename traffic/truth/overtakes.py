@@ -13,7 +13,7 @@ from traffic.sumo.simulation import Frame
 from traffic.truth.manoeuvres import TrueManoeuvre
 from traffic.truth.places import TruePlaces
 
-__all__ = ["OvertakeWatcher"]
+__all__ = ["OvertakeWatcher", "aside_of", "neighbours"]
 
 Floats = npt.NDArray[np.float64]
 Positions = npt.NDArray[np.intp]
@@ -23,6 +23,7 @@ _CLEARANCE = 1.0
 _MOVING = 3.0
 _LONGEST: Duration = MINUTE
 _KEY_SHIFT = 32
+_LATTER = (1 << _KEY_SHIFT) - 1
 
 
 class OvertakeWatcher:
@@ -37,16 +38,21 @@ class OvertakeWatcher:
 
     Each is told twice: as an `overtake`, and as an `overtake_left` or an `overtake_right`, by the
     side on which A was of B, seen in the direction of travel, when their centres were nearest to
-    each other along the link. The vehicles are A and B.
+    each other along the link. On the right, where one drives on the right, and on the left
+    elsewhere, it is an `overtake_wrong_side` as well. The vehicles are A and B.
+
+    Args:
+        left_hand: Whether one drives on the left.
     """
 
-    def __init__(self) -> None:
+    def __init__(self, *, left_hand: bool = False) -> None:
         self._pairs = _Pairs.none()
+        self._wrong = "left" if left_hand else "right"
 
     @classmethod
-    def on(cls, _: RoadMap) -> "OvertakeWatcher":
-        """Return a watcher, which is the same for every map."""
-        return cls()
+    def on(cls, road_map: RoadMap) -> "OvertakeWatcher":
+        """Return a watcher for a map."""
+        return cls(left_hand=road_map.left_hand)
 
     def observe(self, frame: Frame, places: TruePlaces) -> list[TrueManoeuvre]:
         """Take in a frame and return the overtakes that end in it."""
@@ -54,7 +60,7 @@ class OvertakeWatcher:
         now = _near_pairs(time, vehicles, places)
         before, known = _matched(self._pairs, now)
         ended = self._ended(time, before, now, known)
-        found = list(_overtakes(time, before, now, np.flatnonzero(ended)))
+        found = list(self._told(time, before, now, np.flatnonzero(ended)))
         self._pairs = _carried(before, now, known)
         return found
 
@@ -70,6 +76,22 @@ class OvertakeWatcher:
         steady = before.moving & now.moving & (time - before.since <= _LONGEST)
         ended: npt.NDArray[np.bool_] = known & swapped & steady
         return ended
+
+    def _told(
+        self, time: TimePoint, before: "_Pairs", now: "_Pairs", ended: Positions
+    ) -> Iterator[TrueManoeuvre]:
+        for row in ended:
+            first, second = int(now.key[row] >> _KEY_SHIFT), int(now.key[row]) & _LATTER
+            was_behind = 0 if before.order[row] > 0 else 1
+            vehicles = (second, first) if was_behind else (first, second)
+            closest = before if before.gap[row] <= now.gap[row] else now
+            larger_is_left = closest.aside[row] > 0
+            side = "left" if larger_is_left == (was_behind == 1) else "right"
+            kinds = ["overtake", f"overtake_{side}"]
+            if side == self._wrong:
+                kinds.append("overtake_wrong_side")
+            begin = TimePoint(int(before.since[row]))
+            yield from (TrueManoeuvre(kind, vehicles, (), begin, time) for kind in kinds)
 
 
 @dataclass(slots=True)
@@ -136,7 +158,7 @@ def _matched(before: _Pairs, now: _Pairs) -> tuple[_Pairs, npt.NDArray[np.bool_]
 
 def _near_pairs(time: TimePoint, vehicles: Table, places: TruePlaces) -> _Pairs:
     """Return the pairs of a frame as if nothing had been before."""
-    behind, in_front = _neighbours(places)
+    behind, in_front = neighbours(places, _REACH)
     ids = vehicles.ids
     larger_in_front = ids[in_front] > ids[behind]
     first = np.where(larger_in_front, behind, in_front)
@@ -152,20 +174,24 @@ def _near_pairs(time: TimePoint, vehicles: Table, places: TruePlaces) -> _Pairs:
         since=np.full(len(key), time, dtype=np.int64),
         moving=fast[first] & fast[second],
         gap=gap,
-        aside=_aside(vehicles, first, second),
+        aside=aside_of(vehicles, first, second),
     )
     return pairs.take(np.argsort(key))
 
 
-def _neighbours(places: TruePlaces) -> tuple[Positions, Positions]:
-    """Return the rows of all pairs within reach: those behind, and those in front of them."""
+def neighbours(places: TruePlaces, reach: float) -> tuple[Positions, Positions]:
+    """Return the rows of all pairs on one link and one way, at most *reach* metres apart.
+
+    Returns:
+        The rows of those behind, and the rows of those in front of them.
+    """
     (rows,) = np.nonzero((places.link >= 0) & np.isfinite(places.progress))
     way = _ways(places)[rows]
     order = np.lexsort((places.progress[rows], way))
     rows, way, progress = rows[order], way[order], places.progress[rows[order]]
     behind, in_front = [rows[:0]], [rows[:0]]
     for shift in range(1, len(rows)):
-        near = (way[shift:] == way[:-shift]) & (progress[shift:] - progress[:-shift] <= _REACH)
+        near = (way[shift:] == way[:-shift]) & (progress[shift:] - progress[:-shift] <= reach)
         if not near.any():
             break
         behind.append(rows[:-shift][near])
@@ -178,7 +204,7 @@ def _ways(places: TruePlaces) -> npt.NDArray[np.int64]:
     return ways
 
 
-def _aside(vehicles: Table, first: Positions, second: Positions) -> Floats:
+def aside_of(vehicles: Table, first: Positions, second: Positions) -> Floats:
     """Return how far each *second* is to the left of its *first*, metres."""
     heading, position = vehicles["heading"], vehicles["position"]
     east = np.cos(heading[first]) + np.cos(heading[second])
@@ -201,22 +227,3 @@ def _carried(before: _Pairs, now: _Pairs, known: npt.NDArray[np.bool_]) -> _Pair
         gap=np.where(beside, np.minimum(before.gap, now.gap), now.gap),
         aside=np.where(beside & ~closer, before.aside, now.aside),
     )
-
-
-def _overtakes(
-    time: TimePoint, before: _Pairs, now: _Pairs, ended: Positions
-) -> Iterator[TrueManoeuvre]:
-    for row in ended:
-        pair = (int(now.key[row] >> _KEY_SHIFT), int(now.key[row]) & ((1 << _KEY_SHIFT) - 1))
-        was_behind = 0 if before.order[row] > 0 else 1
-        closest = before if before.gap[row] <= now.gap[row] else now
-        larger_is_left = closest.aside[row] > 0
-        side = "left" if larger_is_left == (was_behind == 1) else "right"
-        for kind in ("overtake", f"overtake_{side}"):
-            yield TrueManoeuvre(
-                kind,
-                (pair[was_behind], pair[1 - was_behind]),
-                (),
-                TimePoint(int(before.since[row])),
-                time,
-            )

@@ -6,6 +6,8 @@ from dataclasses import dataclass
 from dyknow.time import SECOND, Duration
 from networks.roads import RoadMap
 from networks.turns import Turn
+from traffic.truth.aborted_overtakes import AbortedOvertakeWatcher
+from traffic.truth.facing_traffic import FacingTrafficWatcher
 from traffic.truth.following import CONVOY, TAILGATING, FollowedWatcher, FollowingWatcher
 from traffic.truth.manoeuvres import Watcher
 from traffic.truth.near_collisions import NearCollisionWatcher
@@ -51,7 +53,10 @@ WATCHERS: Mapping[str, Definition] = {
     "overtake": Definition(OvertakeWatcher.on),
     "overtake_left": Definition(OvertakeWatcher.on),
     "overtake_right": Definition(OvertakeWatcher.on),
+    "overtake_aborted": Definition(AbortedOvertakeWatcher.on),
     "overtake_wrong_side": Definition(OvertakeWatcher.on),
+    "overtake_facing_traffic": Definition(FacingTrafficWatcher),
+    "overtake_again_and_again": Definition(AbortedOvertakeWatcher.on),
     "tailgating": Definition(FollowingWatcher, part=TAILGATING),
     "convoy": Definition(FollowingWatcher, part=CONVOY),
     "followed": Definition(FollowedWatcher.on),
