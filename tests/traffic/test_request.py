@@ -102,3 +102,17 @@ def test_an_unknown_scenario_is_answered_with_the_nearest_name():
     """A misspelt name is recognised."""
     with pytest.raises(ScenarioError, match="did you mean 'crossing'"):
         RunRequest.from_texts(scenario="crosing")
+
+
+@pytest.mark.parametrize(
+    ("options", "names"),
+    [
+        ({}, ("turns", "overtakes")),
+        ({"recognise": "all"}, None),
+        ({"recognise": "wrong_way, turns"}, ("wrong_way", "turns")),
+        ({"specification": Path("mine.kpl")}, None),
+    ],
+)
+def test_a_scenario_says_what_is_recognised_unless_a_user_does(options, names):
+    """Of a specification of one's own everything: the scenario speaks of the bundled one."""
+    assert RunRequest.from_texts(scenario="crossing", **options).recognise == names

@@ -18,7 +18,7 @@ from traffic.bundled import data_folder
 from traffic.errors import RequestError, ResultError
 from traffic.request import RunRequest
 from traffic.results import read_result
-from traffic.running import run_scenario
+from traffic.running import check_request, run_scenario
 from traffic.system import (
     MonitoringSystem,
     bundled_specification,
@@ -185,3 +185,25 @@ def test_hidden_columns_are_read_for_the_truth_alone():
     }
 
     assert readers == {("traffic", "sumo"), ("traffic", "truth")}
+
+
+def test_only_what_is_to_be_recognised_is_scored():
+    """Each kind that a chronicle of these outputs claims and the truth knows; turns are one."""
+    asked = {"scenario": "crossing", "view": "truth"}
+
+    both = check_request(RunRequest.from_texts(**asked))
+    one = check_request(RunRequest.from_texts(**asked, recognise="signals"))
+
+    assert both.kinds[:2] == ("turn", "overtake")
+    assert one.kinds == ("red_light",)
+    assert [path.name for path in one.files if path.suffix == ".chronicle"] == [
+        "signals.chronicle"
+    ]
+
+
+def test_what_cannot_be_recognised_is_refused():
+    """The message says what can, and where the name was written."""
+    request = RunRequest.from_texts(scenario="crossing", view="truth", recognise="turns,overtaks")
+
+    with pytest.raises(RequestError, match=r"--recognise: .*did you mean 'overtakes'"):
+        check_request(request)
