@@ -22,6 +22,7 @@ Modules, in reading order:
 - `stains`: marks on the road told from vehicles;
 - `pipeline`: all of this, from two images to percepts;
 - `overlay`: what the system believes, drawn onto the images;
+- `web_films`: such films as web browsers play them;
 - `processes`: cameras and perception as knowledge processes.
 """
 

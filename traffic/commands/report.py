@@ -15,7 +15,18 @@ def report(
     ],
     *,
     html: Annotated[
-        Path | None, typer.Option(help="Write a web page of one file, which opens offline.")
+        Path | None,
+        typer.Option(
+            help="Write a web page of one file, which opens offline: of a run with map, time "
+            "line and the reasons behind each recognition; of several with their scores."
+        ),
+    ] = None,
+    film: Annotated[
+        Path | None,
+        typer.Option(
+            help="With --html of one run: the film that '--overlay' wrote, played in step with "
+            "the map. Default: RUN.mp4 beside the folder RUN, if it is there."
+        ),
     ] = None,
     csv: Annotated[
         Path | None, typer.Option(help="Write scores, or the measures of all cells, as CSV.")
@@ -24,13 +35,21 @@ def report(
         bool, typer.Option("--json", help="Print one JSON document instead of tables.")
     ] = False,
 ) -> None:
-    """Show what runs recognised, against the truth, or what an experiment measured; runs nothing."""
+    """Show what runs recognised, against the truth, or what an experiment measured.
+
+    Nothing is run again.
+    """
+    from traffic.commands.showing import progress
     from traffic.commands.showing_reports import show_report
+    from traffic.errors import RequestError
     from traffic.reporting.reports import read_report
 
+    if film is not None and html is None:
+        raise RequestError("--film", "--html as well, to be part of that page", film)
     found = read_report(folders)
     if html is not None:
-        found.write_page(html)
+        with progress("explaining", "recognitions") as on_progress:
+            found.write_page(html, film, on_progress)
         sys.stderr.write(f"page written to {html}\n")
     if csv is not None:
         found.write_csv(csv)

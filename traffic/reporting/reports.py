@@ -14,9 +14,12 @@ from traffic.experiments.folders import ExperimentFolder
 from traffic.experiments.running import Experiment, read_experiment
 from traffic.experiments.tables import cell_table
 from traffic.reporting.experiments import page_of_experiment
+from traffic.reporting.films import film_beside
 from traffic.reporting.pages import write_page
+from traffic.reporting.runs import page_of_run, page_of_runs
 from traffic.results import RunResult, Score, read_result
 from traffic.totals import total_score
+from traffic.watching import OnProgress
 
 __all__ = ["ExperimentReport", "Report", "RunsReport", "read_report"]
 
@@ -58,14 +61,27 @@ class RunsReport:
                 table.writerow([run, kind, *(getattr(score, name) for name in _COUNTS)])
         write_page(buffer.getvalue(), path)
 
-    def write_page(self, path: Path) -> None:
-        """Write a web page.
+    def write_page(self, path: Path, film: Path | None, on_progress: OnProgress) -> None:
+        """Write a web page of one file; of one run with its film, if there is one.
+
+        Args:
+            path: The file.
+            film: The overlay film; None for the one beside the folder of the run, if any.
+            on_progress: Told how many recognitions have been explained, and of how many.
 
         Raises:
-            RequestError: Always; only experiments have pages.
+            ResultError: The file cannot be written.
+            RequestError: A film is given for several runs, or that of another run.
+            FilmReadError: The film cannot be read.
         """
-        run = next(iter(self.results))
-        raise RequestError("--html", f"an experiment to write '{path}' about", run)
+        if len(self.results) > 1:
+            if film is not None:
+                raise RequestError("--film", "one run only, whose film it is", film)
+            write_page(page_of_runs(self.results, self.total), path)
+            return
+        ((folder, result),) = self.results.items()
+        shown = film_beside(folder) if film is None else film
+        write_page(page_of_run(folder, result, shown, on_progress), path)
 
 
 @dataclass(frozen=True, slots=True)
@@ -91,12 +107,16 @@ class ExperimentReport:
         table = cell_table(self.experiment.design, self.experiment.cells)
         write_page(table.to_csv(index=False), path)
 
-    def write_page(self, path: Path) -> None:
-        """Write a web page of one file.
+    def write_page(self, path: Path, film: Path | None, on_progress: OnProgress) -> None:
+        """Write a web page of one file; it is quick and has no film.
 
         Raises:
             ResultError: The file cannot be written.
+            RequestError: A film is given.
         """
+        if film is not None:
+            raise RequestError("--film", "a run, not an experiment, with it", film)
+        on_progress(1, 1)
         write_page(page_of_experiment(self.experiment), path)
 
 
