@@ -61,8 +61,10 @@ def test_a_car_that_passes_another_overtakes_it() -> None:
 
 
 def test_the_side_is_that_of_the_overtaker() -> None:
-    """A car that passes to the right of the other overtakes on the right."""
-    assert [each.kind for each in watch_all(pass_by(left=-3.5))] == ["overtake", "overtake_right"]
+    """A car that passes to the right of the other overtakes on the right, the wrong side."""
+    kinds = [each.kind for each in watch_all(pass_by(left=-3.5))]
+
+    assert kinds == ["overtake", "overtake_right", "overtake_wrong_side"]
 
 
 def test_the_numbers_of_the_cars_do_not_matter() -> None:
