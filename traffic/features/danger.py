@@ -41,9 +41,10 @@ class CollisionCourses(Reactive):
       that: who brakes is slower than is known yet; and
     * both are faster than 1 m/s, or one of them follows the other on one road.
 
-    A car is active while it was observed within 400 ms. Cars count as smaller than they are by
-    *certainty* standard deviations of where they are along and across their roads, and as slower
-    by as many of their speed, so that noise makes no danger.
+    A car is active while it was observed within 400 ms. One that is in a crossing, but beside the
+    road on which it is believed to be, goes nobody knows where, and does not count. Cars count as
+    smaller than they are by *certainty* standard deviations of where they are along and across
+    their roads, and as slower by as many of their speed, so that noise makes no danger.
 
     Args:
         roads: The road network.
@@ -100,13 +101,22 @@ class CollisionCourses(Reactive):
         both = np.minimum(speed[first], speed[second]) >= _MOVING
         aligned = np.cos(cars["heading"][first] - cars["heading"][second]) > _ALIGNED
         same_road = cars["road"][first] == cars["road"][second]
-        (rows,) = np.nonzero(closing & (both | (aligned & same_road)))
+        known = self._ways_are_known(cars)
+        asked = closing & (both | (aligned & same_road)) & known[first] & known[second]
+        (rows,) = np.nonzero(asked)
         touched = first_touch(
             self._roads, self._bodies(cars), (first[rows], second[rows]), self._times
         )
         limit = np.where(aligned[rows], self._following, self._horizon)
         collide[rows] = touched <= limit + _STEP / 2
         return collide
+
+    def _ways_are_known(self, cars: Table) -> npt.NDArray[np.bool_]:
+        """Return which cars are where their roads are; in a crossing one may be on another."""
+        road = cars["road"]
+        beside = np.abs(cars["d"]) > self._roads.road_width[road] / 2
+        known: npt.NDArray[np.bool_] = ~(beside & (self._roads.crossing_of_road[road] >= 0))
+        return known
 
     def _bodies(self, cars: Table) -> Bodies:
         """Return the cars as small and as slow as they may well be."""
