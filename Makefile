@@ -5,7 +5,7 @@ BIN := .venv/bin
 READY := .venv/.ready
 PACKAGES := anchoring chronicles dyknow networks perception traffic
 
-.PHONY: help setup demo test check fix lock networks clean
+.PHONY: help setup demo test check fix lock networks figures clean
 
 help:                ## Show this list
 	@grep -E '^[a-z]+: .*##|^[a-z]+:  +##' $(MAKEFILE_LIST) | sed -E 's/:[^#]*##/\t/' | expand -t 12
@@ -48,6 +48,12 @@ networks: setup      ## Compile the bundled road networks again (needs the extra
 	$(BIN)/traffic network build data/networks/avenue data/networks/avenue/avenue.net.xml --force
 	$(BIN)/traffic network build data/networks/quarter data/networks/quarter/quarter.net.xml --force
 	$(BIN)/traffic network build data/networks/high_street data/networks/high_street/high_street.net.xml --force
+
+figures: setup       ## Make the figures of the README again (an hour; a processor of its own for the last two)
+	$(BIN)/traffic experiment accuracy --out figures/accuracy
+	$(BIN)/traffic experiment library --out figures/library
+	taskset -c 0 $(BIN)/traffic run crossing --out figures/crossing
+	taskset -c 0 $(BIN)/traffic benchmark chronicles --out figures/chronicles
 
 clean:               ## Remove what the other targets made
 	rm -rf .venv .mypy_cache .ruff_cache .pytest_cache .hypothesis build dist

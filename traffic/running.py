@@ -14,7 +14,6 @@ from dyknow.source_text import nearest_name
 from dyknow.streams.sample import Sample
 from dyknow.streams.table import Table
 from dyknow.time import MILLISECOND, SECOND
-from networks.reading import read_road_map
 from perception.camera import Camera
 from traffic.errors import RequestError
 from traffic.explaining.keeping import explanations_kept
@@ -38,7 +37,7 @@ from traffic.system import (
     read_specification,
 )
 from traffic.watching import IMAGES, OnProgress, Watch, told_of
-from traffic.world import World, camera_of, generators_of
+from traffic.world import World, camera_of, generators_of, road_map_at
 
 __all__ = ["CheckedRequest", "check_request", "run_scenario", "scorer_for", "write_network"]
 
@@ -57,7 +56,7 @@ def run_scenario(request: RunRequest, on_progress: OnProgress) -> tuple[RunResul
         SpecificationErrors: The specification that was asked for has faults.
     """
     specification = _specification(request)
-    road_map = read_road_map(network_of(request.scenario))
+    road_map = road_map_at(network_of(request.scenario))
     camera = camera_of(request.scenario.camera, road_map) if request.view is View.VISION else None
     traffic, sensors = generators_of(request.seed)
     path = request.out or new_folder(request.scenario.name)
@@ -112,7 +111,7 @@ def check_request(request: RunRequest) -> CheckedRequest:
         SpecificationErrors: The specification has faults, or cannot have a new setting.
     """
     network = network_of(request.scenario)
-    road_map = read_road_map(network)
+    road_map = road_map_at(network)
     camera = camera_of(request.scenario.camera, road_map) if request.view is View.VISION else None
     world = World(road_map, _NoVehicles(), camera, generators_of(request.seed)[1])
     system = _system(request, _specification(request), world)

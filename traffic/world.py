@@ -3,18 +3,23 @@
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass, field
+from functools import lru_cache
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from dyknow.streams.process import Source
 from dyknow.streams.sample import Sample
+from networks.reading import read_road_map
 from networks.roads import RoadMap
 from perception.camera import Calibration, Camera
 from traffic.errors import ScenarioError
 from traffic.scenarios import CameraSettings
 
-__all__ = ["World", "camera_of", "generators_of"]
+__all__ = ["World", "camera_of", "generators_of", "road_map_at"]
+
+_MOST_MAPS = 8
 
 
 class _Silence:
@@ -42,6 +47,24 @@ class World:
     camera: Camera | None
     generator: np.random.Generator
     signals: Source = field(default_factory=_Silence)
+
+
+def road_map_at(path: Path) -> RoadMap:
+    """Return the map of the network at *path*; read once as long as the file stays as it is.
+
+    Raises:
+        NetworkError: The network cannot be read.
+    """
+    try:
+        state = path.stat()
+    except OSError:
+        return read_road_map(path)
+    return _road_map(path, state.st_mtime_ns, state.st_size)
+
+
+@lru_cache(maxsize=_MOST_MAPS)
+def _road_map(path: Path, _modified: int, _size: int) -> RoadMap:
+    return read_road_map(path)
 
 
 def generators_of(seed: int) -> tuple[np.random.Generator, np.random.Generator]:
