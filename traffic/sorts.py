@@ -105,7 +105,7 @@ SORTS: Mapping[str, Callable[[Any], str | None]] = {
     "car_stop_lines": _Tables({"over": _COUNT, "beyond": _COUNT, "observed": _TRUTH}),
     "car_sides": _Tables({"wrong_side": _TRUTH, "observed": _TRUTH}),
     "car_pairs": _Tables({**_PAIR, "ahead": _NUMBER, "left": _NUMBER}),
-    "car_relations": _Tables({**_PAIR, **dict.fromkeys(("behind", "in_front", "close"), _TRUTH)}),
+    "car_relations": _Tables({**_PAIR, **dict.fromkeys(("behind", "in_front", "close"), _COUNT)}),
     "headways": _Tables({**_PAIR, "time_gap": _NUMBER, "deviation": _NUMBER, "aside": _NUMBER}),
     "car_following": _Tables({**_PAIR, "follows": _TRUTH, "tailgates": _TRUTH}),
     "car_dangers": _Tables({**_PAIR, "collision_course": _TRUTH}),
