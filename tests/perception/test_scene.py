@@ -1,7 +1,10 @@
 """The ground and what stands on it."""
 
 import numpy as np
+import pytest
 import shapely
+from hypothesis import given, settings
+from hypothesis import strategies as st
 
 from perception.scene import Ground, build_surroundings, polygons_of
 from tests.perception.scenes import CAR, road, vehicles
@@ -52,3 +55,42 @@ def test_choosing_vehicles_keeps_the_columns_together():
 def test_outlines_of_too_few_corners_are_no_polygons():
     """A line in place of an outline is left out."""
     assert len(polygons_of([np.zeros((2, 2)), np.eye(3)[:, :2]])) == 1
+
+
+ROAD = np.array([[-100.0, -4.0], [100.0, -4.0], [100.0, 4.0], [-100.0, 4.0]])
+
+
+def rectangle(x: float, y: float, angle: float, length: float, width: float) -> np.ndarray:
+    """Return the corners of a rectangle."""
+    half = np.array([[1, 1], [-1, 1], [-1, -1], [1, -1]]) * [length / 2, width / 2]
+    turn = np.array([[np.cos(angle), np.sin(angle)], [-np.sin(angle), np.cos(angle)]])
+    return half @ turn + [x, y]
+
+
+@settings(derandomize=True, deadline=None, max_examples=40)
+@given(
+    x=st.floats(-80, 80), y=st.floats(20, 60), angle=st.floats(0, 3.1), length=st.floats(8, 30),
+    share=st.floats(0.3, 0.9),
+)  # fmt: skip
+def test_a_known_house_is_a_box_around_its_outline(
+    x: float, y: float, angle: float, length: float, share: float
+) -> None:
+    """Of the same place, size and direction."""
+    outline = rectangle(x, y, angle, length, share * length)
+
+    found = build_surroundings(Ground((ROAD,), buildings=(outline,)), np.random.default_rng(1))
+
+    assert len(found.buildings) == len(found.building_colours) == 1
+    box = found.buildings[0]
+    np.testing.assert_allclose(box[:2], [x, y], atol=1e-6)
+    np.testing.assert_allclose(sorted(box[3:5]), [share * length, length], rtol=1e-6)
+    corners = rectangle(*box[:5])
+    gaps = np.linalg.norm(corners[:, None] - outline[None], axis=2).min(axis=1)
+    assert gaps.max() == pytest.approx(0.0, abs=1e-6)
+    distance = np.linalg.norm(found.trees[:, :2] - box[:2], axis=1)
+    assert (distance > np.hypot(*box[3:5]) / 2).all()
+
+
+def test_where_no_house_is_known_some_are_made_up() -> None:
+    """A road through nothing looks wrong."""
+    assert len(build_surroundings(Ground((ROAD,)), np.random.default_rng(1)).buildings) > 1
