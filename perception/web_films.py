@@ -11,6 +11,7 @@ from typing import Any
 
 import av
 import numpy as np
+from av.video.frame import PictureType
 
 from perception.errors import PerceptionError
 
@@ -19,7 +20,7 @@ __all__ = ["FilmReadError", "count_frames", "write_web_film"]
 _CODEC = "libvpx-vp9"
 _MILLISECOND = Fraction(1, 1000)
 _SECONDS_BETWEEN_KEYS = 2
-_OPTIONS = {"deadline": "realtime", "cpu-used": "8", "row-mt": "1", "crf": "38"}
+_OPTIONS = {"deadline": "realtime", "cpu-used": "7", "row-mt": "1", "crf": "42"}
 
 
 class FilmReadError(PerceptionError):
@@ -87,8 +88,9 @@ def _retimed(
 ) -> Iterator[av.VideoFrame]:
     for frame, time in zip(frames, times, strict=False):
         if time >= 0:
-            made = frame.reformat(size[0], size[1], "yuv420p")
+            made = frame.reformat(size[0], size[1], "yuv420p", interpolation="AREA")
             made.pts, made.time_base = time, _MILLISECOND
+            made.pict_type = PictureType.NONE  # a key frame there need not be one here
             yield made
 
 

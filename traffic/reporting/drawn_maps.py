@@ -36,7 +36,7 @@ def drawn_map(road_map: RoadMap, camera: Camera | None, reached: Box | None) -> 
     signals = road_map.signals
     centres = [road_map.crossing_centre(at) for at in range(len(road_map.crossings))]
     return {
-        "box": _screen_box(reached if reached is not None else road_map.bounds),
+        "box": _screen_box(_first_seen(road_map, view, reached)),
         "roads": _path(_near(road_map.road_polygons(), shown), closed=True),
         "crossings": _path(_near(road_map.crossing_polygons(), shown), closed=True),
         "solid": _path(_near((each for dashed, each in lines if not dashed), shown)),
@@ -53,6 +53,14 @@ def drawn_map(road_map: RoadMap, camera: Camera | None, reached: Box | None) -> 
         ],
         "view": None if view is None else _path([view], closed=True),
     }
+
+
+def _first_seen(road_map: RoadMap, view: Points | None, reached: Box | None) -> Box:
+    """Return the box that a page shows at first: the ground in view, or else all tracks."""
+    if view is None:
+        return road_map.bounds if reached is None else reached
+    (left, bottom), (right, top) = view.min(axis=0).tolist(), view.max(axis=0).tolist()
+    return left, bottom, right, top
 
 
 def _shown(road_map: RoadMap, view: Points | None, reached: Box | None) -> Box:

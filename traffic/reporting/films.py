@@ -15,7 +15,7 @@ from traffic.reporting.tracks import Whole
 
 __all__ = ["EmbeddedFilm", "embedded_film", "film_beside"]
 
-_WIDTH = 1_024
+_WIDTH = 1_280
 _BITS_PER_SECOND = 320_000
 _STEP_MS = 80
 _PERIOD_MS = 40

@@ -24,9 +24,8 @@ from traffic.explaining.wording import (
     length_text,
     time_text,
 )
-from traffic.reporting.bands import band_of, bands_about
-from traffic.reporting.items import symbols_of
-from traffic.results import Manoeuvre
+from traffic.reporting.bands import band_of
+from traffic.reporting.misses import believed_of
 from traffic.watching import OnProgress
 
 __all__ = ["conditions_of", "processes_of", "reasons_of"]
@@ -48,7 +47,7 @@ def reasons_of(walker: Walker, on_progress: OnProgress) -> dict[str, Any]:
         found[f"recognition={number}"] = _or_fault(partial(_recognised, walker, number))
         on_progress(len(found), total)
     for number, missed in enumerate(result.missed, start=1):
-        found[f"missed={number}"] = _or_fault(partial(_missed, walker, missed))
+        found[f"missed={number}"] = _or_fault(partial(believed_of, walker, missed))
         on_progress(len(found), total)
     return found
 
@@ -208,11 +207,3 @@ def _frame(frame: Frame) -> dict[str, Any]:
             for each in frame.seen
         ],
     }
-
-
-def _missed(walker: Walker, missed: Manoeuvre) -> dict[str, Any]:
-    """Return what was believed of the cars of a manoeuvre that was not recognised."""
-    symbols = symbols_of(walker.run.result, missed.vehicles)
-    if not symbols:
-        return {"span": None, "bands": []}
-    return bands_about(walker, symbols, missed.begin, missed.end)

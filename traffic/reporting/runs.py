@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import Any, TypeVar
 
 import numpy as np
+import numpy.typing as npt
 
 from dyknow.time import MILLISECOND
 from networks.errors import NetworkError
@@ -173,10 +174,16 @@ def _signals(run: KeptRun, road_map: RoadMap) -> dict[str, list[tuple[float, str
 
 
 def _reached(tracks: Mapping[str, Any]) -> Box | None:
-    """Return the box that all tracks lie in, metres; None if there are none."""
-    pieces = [piece for car in tracks["cars"] for piece in car["pieces"]]
-    if not pieces:
+    """Return the box in which all objects were seen, metres; None if there were none."""
+    seen = [_seen(piece) for car in tracks["cars"] for piece in car["pieces"]]
+    points = np.concatenate([np.empty((0, 2)), *seen])
+    if not len(points):
         return None
-    x = np.concatenate([np.cumsum(piece["x"]) for piece in pieces]) / 10
-    y = np.concatenate([np.cumsum(piece["y"]) for piece in pieces]) / -10
-    return float(x.min()), float(y.min()), float(x.max()), float(y.max())
+    (left, bottom), (right, top) = points.min(axis=0).tolist(), points.max(axis=0).tolist()
+    return left, bottom, right, top
+
+
+def _seen(piece: Mapping[str, Any]) -> npt.NDArray[np.float64]:
+    """Return where on a stretch of a track its object was seen, shape (n, 2), metres."""
+    points = np.cumsum([piece["x"], piece["y"]], axis=1).T / [10, -10]
+    return np.delete(points, piece["unseen"], axis=0)

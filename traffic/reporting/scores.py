@@ -50,6 +50,11 @@ class ScoreRow:
     precision: ShownShare
     recall: ShownShare
 
+    @property
+    def is_idle(self) -> bool:
+        """Whether there was nothing to count."""
+        return not self.score.truth and not self.score.recognised
+
 
 def score_rows(score_by_kind: Mapping[str, Score]) -> list[ScoreRow]:
     """Return a row for each kind, in the order in which they are given."""

@@ -8,7 +8,7 @@ const film = (() => {
 
   const screen = video.parentElement;
   const views = [["both", ""], ["colour", "left"], ["thermal", "right"]];
-  let view = innerWidth < 640 ? 1 : 0;
+  let view = 1;
   function drawViews() {
     screen.className = `screen ${views[view][1]}`;
     byId("film-views").replaceChildren(

@@ -20,17 +20,20 @@ const mapView = (() => {
   const path = (d, attributes) => svg("path", { d, "vector-effect": "non-scaling-stroke", ...attributes });
   const map = data.map;
 
-  const trackLine = (car, from = -Infinity, to = Infinity) =>
-    car.pieces
-      .map((piece) => {
-        const points = [];
-        piece.x.forEach((x, i) => {
-          const t = times[piece.from + i];
-          if (t >= from && t <= to) points.push(`${x / 10} ${piece.y[i] / 10}`);
-        });
-        return points.length > 1 ? `M${points.join("L")}` : "";
-      })
-      .join("");
+  /* The line along which a car was seen, in several pieces where it was not. */
+  function trackLine(car, from = -Infinity, to = Infinity) {
+    let line = "";
+    for (const piece of car.pieces) {
+      let begins = true;
+      piece.x.forEach((x, i) => {
+        const t = times[piece.from + i];
+        const counts = t >= from && t <= to && !piece.unseen.has(i);
+        if (counts) line += `${begins ? "M" : "L"}${x / 10} ${piece.y[i] / 10}`;
+        begins = !counts;
+      });
+    }
+    return line;
+  }
 
   const ground = svg("g");
   if (map) {

@@ -25,7 +25,7 @@ const chosenItem = () => itemById.get(state.chosen) ?? null;
 const rolesOf = (item) => {
   if (!item) return [];
   const known = (data.reasons[item.id]?.objects ?? []).map((each) => each.symbol);
-  return [...new Set([...item.cars, ...known])];
+  return [...new Set([...item.cars, ...known, ...(data.reasons[item.id]?.there ?? [])])];
 };
 const roleColour = (symbol) => {
   const at = rolesOf(chosenItem()).indexOf(symbol);

@@ -157,9 +157,10 @@ const why = (() => {
       return element("li", {}, element("a", { href: `#${other.id}`, onclick: (e) => { e.preventDefault(); choose(other.id); } }, `${number}: ${words(other.kind)} ${other.cars.join(", ")}`), ` ${seconds(other.begin)} to ${seconds(other.end)}: ${VERDICTS[other.verdict][0]}`);
     });
     return [
-      item.cars.length ? "" : element("p", {}, "No recognition tells under which symbol these vehicles were followed, so it is not known what was believed of them."),
+      item.cars.length ? "" : element("p", {}, "No recognition tells under which symbol this was followed. ",
+        ...(reason?.there?.length ? coloured(`Believed to be there at that time: ${reason.there.join(", ")}.`) : ["Nothing was believed to be there at that time."])),
       ...(instead.length ? section("Recognised of the same vehicles at about that time", list(...instead)) : []),
-      ...(reason?.bands?.length ? section("What was believed of them", bands(reason)) : item.cars.length ? [element("p", {}, "No attribute of theirs changed at about that time.")] : []),
+      ...(reason?.bands?.length ? section(item.cars.length ? "What was believed of them" : "What was believed of what was there", bands(reason)) : item.cars.length ? [element("p", {}, "No attribute of theirs changed at about that time.")] : []),
     ];
   }
   function recognised(item, reason) {
