@@ -17,7 +17,6 @@ __all__ = ["FacingTrafficWatcher"]
 
 _HORIZON = 4.0
 _BEFORE = Duration(8 * SECOND)
-_AFTER = Duration(2 * SECOND)
 _AGAINST = math.cos(math.radians(120.0))
 _SLOWEST = 0.1
 
@@ -31,8 +30,8 @@ class FacingTrafficWatcher:
     from its heading by more than 120°. It *faces* another one while it is there and that one
     comes towards it on the same link, so that at the speeds of both their bumpers would touch
     within 4 s. An `overtake_facing_traffic` is an overtake of A and B (`OvertakeWatcher`) with
-    every C that A begins to face from 8 s before the begin of the overtake to 2 s after its end;
-    it takes as long as the overtake. The vehicles are A, B and C.
+    every C that A begins to face from 8 s before the begin of the overtake to its end; it takes
+    as long as the overtake. The vehicles are A, B and C.
 
     Args:
         road_map: The map.
@@ -41,30 +40,26 @@ class FacingTrafficWatcher:
     def __init__(self, road_map: RoadMap) -> None:
         self._map = road_map
         self._overtakes = OvertakeWatcher.on(road_map)
-        self._pending: list[TrueManoeuvre] = []
         self._facing: frozenset[_Pair] = frozenset()
         self._began: dict[_Pair, list[TimePoint]] = {}
 
     def observe(self, frame: Frame, places: TruePlaces) -> list[TrueManoeuvre]:
-        """Take in a frame and return the overtakes of which all is known now."""
+        """Take in a frame and return who overtook like this until now."""
         facing = frozenset(self._pairs(frame, places))
         for pair in facing - self._facing:
             self._began.setdefault(pair, []).append(frame.time)
         self._facing = facing
         overtakes = self._overtakes.observe(frame, places)
-        self._pending += [each for each in overtakes if each.kind == "overtake"]
-        due = [each for each in self._pending if each.end + _AFTER <= frame.time]
-        self._pending = [each for each in self._pending if each.end + _AFTER > frame.time]
-        return [one for each in due for one in self._told(each)]
+        return [one for each in overtakes if each.kind == "overtake" for one in self._told(each)]
 
     def finish(self) -> list[TrueManoeuvre]:
-        """Return the overtakes that ended so late that not all is known of them."""
-        return [one for each in self._pending for one in self._told(each)]
+        """Return nothing: who is beside another at the end has not overtaken it yet."""
+        return []
 
     def _told(self, overtake: TrueManoeuvre) -> Iterator[TrueManoeuvre]:
         driver = overtake.vehicles[0]
         for (one, other), times in self._began.items():
-            first, last = overtake.begin - _BEFORE, overtake.end + _AFTER
+            first, last = overtake.begin - _BEFORE, overtake.end
             if one == driver and any(first <= time <= last for time in times):
                 vehicles = (*overtake.vehicles, other)
                 yield TrueManoeuvre(

@@ -54,7 +54,7 @@ def test_who_is_on_the_other_side_four_seconds_before_meeting_faces_traffic(
     avenue: RoadMap,
 ) -> None:
     """It takes as long as the overtake, and names who comes."""
-    (found,) = watch(avenue, meeting=11.0)
+    (found,) = watch(avenue, meeting=10.0)
 
     assert (found.kind, found.vehicles) == ("overtake_facing_traffic", (0, 1, 2))
     assert 5 < found.begin / 1e9 < 6 < found.end / 1e9 < 7
@@ -63,4 +63,4 @@ def test_who_is_on_the_other_side_four_seconds_before_meeting_faces_traffic(
 def test_with_room_or_on_the_own_side_nobody_is_faced(avenue: RoadMap) -> None:
     """Who meets somebody six seconds after being back, or never left its side, had room."""
     assert watch(avenue, meeting=15.0) == []
-    assert watch(avenue, meeting=11.0, side=-5.25) == []
+    assert watch(avenue, meeting=10.0, side=-5.25) == []
