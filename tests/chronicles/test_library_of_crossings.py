@@ -92,14 +92,25 @@ def test_who_stands_for_five_seconds_stops_in_the_crossing() -> None:
 
 
 def test_short_stops_and_stops_outside_are_none() -> None:
-    """Who moves off earlier, leaves the crossing, or stands before it, has not stopped there."""
+    """Who moves off earlier, has left the crossing, or stands before it, has not stopped there."""
     short = crossing((7_000, "cars.standing c", "true"), (11_500, "cars.standing c", "false"))
-    left = crossing((7_000, "cars.standing c", "true"), (9_000, "cars.crossing c", "no_crossing"))
+    left = crossing((6_000, "cars.crossing c", "no_crossing"), (7_000, "cars.standing c", "true"))
     before = World("crossings")
     before.tell(0, [("cars.crossing c", "no_crossing"), ("cars.standing c", "true")])
     before.tell(60_000, [("cars.crossing c", "x")])
 
     assert short.names() == left.names() == before.names() == []
+
+
+def test_who_stands_at_the_border_stays_where_he_came_to_rest() -> None:
+    """Noise makes a car that stands seem to leave and come back; it stops once."""
+    world = crossing(
+        (7_000, "cars.standing c", "true"),
+        (9_000, "cars.crossing c", "no_crossing"),
+        (10_000, "cars.crossing c", "x"),
+    )
+
+    assert world.names() == ["stop_in_crossing"]
 
 
 def test_two_stops_in_one_crossing_are_two() -> None:
