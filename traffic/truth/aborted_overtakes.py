@@ -17,7 +17,7 @@ __all__ = ["AbortedOvertakeWatcher"]
 
 _REACH = 60.0
 _CLEARANCE = 1.0
-_IN_LINE = 1.2
+_IN_LINE = 1.6
 _MOVING = 3.0
 _LONGEST: Duration = MINUTE
 _TIMES = 3
@@ -46,7 +46,7 @@ class AbortedOvertakeWatcher:
 
     A is *behind* B if its centre is behind B's by at least half of both lengths and 1 m, along
     the link on which both travel the same way, at most 60 m apart; it is *level* if neither is
-    behind the other; it is *in line* if its centre is less than 1.2 m to the left or right of
+    behind the other; it is *in line* if its centre is less than 1.6 m to the left or right of
     B's. An `overtake_aborted` begins in the last frame in which A is behind B and in line before
     it leaves the line, and ends in the first one in which it is so again, at most 60 s later. It
     was level in between, and never in front, and both were faster than 3 m/s all the while.
