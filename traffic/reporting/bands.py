@@ -7,6 +7,7 @@ from dyknow.time import MILLISECOND
 from traffic.explaining.attributes import Steps
 from traffic.explaining.kept import records_of
 from traffic.explaining.story import Band
+from traffic.explaining.symbols import sort_of_symbol
 from traffic.explaining.walking import Walker
 
 __all__ = ["band_of", "bands_about"]
@@ -35,17 +36,17 @@ def bands_about(
 ) -> dict[str, Any]:
     """Return every attribute of some objects that changed between two times, milliseconds.
 
-    Of pairs only those are told in which two of the objects take part, if there are two.
+    Those in which other objects take part are left out.
     """
     since, until = max(begin - _BEFORE_MS, 0.0), end + _BEFORE_MS
-    wanted = set(symbols)
+    wanted, sorts = set(symbols), set(walker.run.description.sorts.values())
     events = walker.run.events
     times = events["time"] / MILLISECOND
     keys: dict[tuple[str, tuple[str, ...]], None] = {}
     for row in records_of(events[(times >= since) & (times <= until)]):
         arguments = tuple(map(str, row["arguments"]))
-        about = wanted & set(arguments)
-        if about and len(about) == min(len(arguments), len(wanted)):
+        objects = {each for each in arguments if sort_of_symbol(each) in sorts}
+        if objects and objects <= wanted:
             keys[str(row["attribute"]), arguments] = None
     bands = [
         {

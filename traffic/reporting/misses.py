@@ -32,6 +32,7 @@ def believed_of(walker: Walker, missed: Manoeuvre) -> dict[str, Any]:
         found = [bands_about(walker, known, missed.begin, missed.end)]
     return {
         "there": there,
+        "marks": [[missed.begin, "begins"], [missed.end, "ends"]],
         "span": found[0]["span"] if found else None,
         "bands": [band for each in found for band in each["bands"]],
     }

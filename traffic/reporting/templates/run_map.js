@@ -55,7 +55,7 @@ const mapView = (() => {
   for (const car of cars) tracks.append(path(trackLine(car), { "stroke-width": 1 }));
   const trails = svg("g", { fill: "none", "stroke-linecap": "round", "stroke-linejoin": "round" });
   const bodies = svg("g");
-  const labels = svg("g", { "text-anchor": "middle", "paint-order": "stroke", stroke: "var(--land)", "stroke-width": "0.25em", "stroke-linejoin": "round" });
+  const labels = svg("g", { "text-anchor": "middle", "paint-order": "stroke", stroke: "var(--land)", "stroke-linejoin": "round" });
   const places = svg("g", { "text-anchor": "middle", opacity: 0.85 });
   box.append(ground, tracks, trails, places, bodies, labels);
 
@@ -190,6 +190,7 @@ const mapView = (() => {
       label.setAttribute("x", place.x);
       label.setAttribute("y", place.y - above);
       label.style.fontSize = `${11.5 * shown.pixel}px`;
+      label.style.strokeWidth = `${3 * shown.pixel}px`;
       label.style.fill = colour ?? "var(--ink)";
       label.style.fontWeight = colour ? 700 : 400;
     }
