@@ -87,6 +87,7 @@ def local_workers(number: int) -> Iterator[Engine]:
             host="127.0.0.1",
             dashboard_address=None,
             memory_limit=0,
+            env={"OPENCV_FOR_THREADS_NUM": "1"},
         ) as cluster,
         Client(cluster) as client,
     ):
