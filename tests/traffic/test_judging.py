@@ -42,7 +42,7 @@ _STREAMS = (
     "car_pairs",
     "car_changes",
     "cars/1",
-    "car_relations/1",
+    "car_relation_changes/1",
     "overtakes/1",
     "output/cars",
     "output/percepts",
