@@ -18,7 +18,8 @@ def report(
         Path | None,
         typer.Option(
             help="Write a web page of one file, which opens offline: of a run with map, time "
-            "line and the reasons behind each recognition; of several with their scores."
+            "line and the reasons behind all of it, of several runs with their scores, of an "
+            "experiment with its measures."
         ),
     ] = None,
     film: Annotated[

@@ -3,6 +3,7 @@
 import base64
 import tempfile
 from dataclasses import dataclass
+from functools import reduce
 from pathlib import Path
 
 import numpy as np
@@ -53,35 +54,30 @@ def embedded_film(path: Path, run: KeptRun | None) -> EmbeddedFilm:
         RequestError: It is that of another run.
     """
     frames = count_frames(path)
-    times = None if run is None else _times(run)
-    if times is None:
-        shown = _PERIOD_MS * np.arange(frames)
-    elif len(times) != frames:
+    times = _PERIOD_MS * np.arange(frames) if run is None else _times(run)
+    if not len(times):
+        raise RequestError("--film", "no film, because this run was made without cameras", path)
+    if len(times) != frames:
         expected = f"the film of this run, with {len(times)} frames"
         raise RequestError("--film", expected, f"{path}, with {frames}")
-    else:
-        shown = times
     with tempfile.TemporaryDirectory(prefix="traffic-") as folder:
         small = Path(folder) / "film.webm"
         write_web_film(
-            path, small, _thinned(shown), width=_WIDTH, bits_per_second=_BITS_PER_SECOND
+            path, small, _thinned(times), width=_WIDTH, bits_per_second=_BITS_PER_SECOND
         )
         data = base64.b64encode(small.read_bytes()).decode()
-    return EmbeddedFilm(data, times is not None)
+    return EmbeddedFilm(data, run is not None)
 
 
-def _times(run: KeptRun) -> Whole | None:
+def _times(run: KeptRun) -> Whole:
     """Return when the frames were taken: the times of which there is an image in every stream."""
     by_stream = [
         of["valid_time"].to_numpy(np.int64)
         for _, of in run.images.groupby("stream", observed=True)
     ]
     if not by_stream:
-        return None
-    common = by_stream[0]
-    for times in by_stream[1:]:
-        common = np.intersect1d(common, times)
-    return common // MILLISECOND
+        return np.empty(0, dtype=np.int64)
+    return reduce(np.intersect1d, by_stream) // MILLISECOND
 
 
 def _thinned(times: Whole) -> list[int]:

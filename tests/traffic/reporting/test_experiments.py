@@ -1,20 +1,17 @@
 """The page of an experiment: self-contained, safe, and what it shows in a real browser."""
 
 import re
-import shutil
-import subprocess
 from pathlib import Path
 
 import pytest
 
+from tests.support.browsing import in_browser, needs_browser
 from traffic.experiments.designs import Design
 from traffic.experiments.measures import Share
 from traffic.experiments.running import Experiment
 from traffic.experiments.tables import CellMeasures
 from traffic.reporting.experiments import page_of_experiment
 from traffic.reporting.pages import write_page
-
-BROWSER = shutil.which("chromium") or shutil.which("chromium-browser") or shutil.which("chrome")
 
 
 def experiment(description: str = "Noise and periods.") -> Experiment:
@@ -58,21 +55,15 @@ def test_texts_cannot_become_markup() -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.skipif(BROWSER is None, reason="no Chromium is installed")
+@needs_browser
 @pytest.mark.parametrize("width", [1280, 390])
 def test_a_browser_shows_the_shares(tmp_path: Path, width: int) -> None:
     """Heat map, curves and table are there, without an error, on a desktop and on a phone."""
     page = tmp_path / "page.html"
     write_page(page_of_experiment(experiment()), page)
-    command = [
-        str(BROWSER), "--headless", "--no-sandbox", "--disable-gpu", "--enable-logging=stderr",
-        f"--user-data-dir={tmp_path / 'profile'}", f"--window-size={width},900", "--dump-dom",
-        page.as_uri(),
-    ]  # fmt: skip
-    shown = subprocess.run(command, capture_output=True, text=True, timeout=120, check=True)
 
-    assert "CONSOLE" not in shown.stderr
-    dom = shown.stdout
+    dom = in_browser(page, width)
+
     assert "71.7 %" in dom
     assert "43/60" in dom
     assert dom.count("<circle") == 4
