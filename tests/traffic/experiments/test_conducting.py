@@ -26,7 +26,9 @@ view = "truth"
 position_noise = [0, 4]
 stability = [300, "500 ms"]
 """
-BASIS = Basis(design="d", design_sha256="d", versions={"dyknow-traffic": "1"}, files_sha256={"f": "0"})
+BASIS = Basis(
+    design="d", design_sha256="d", versions={"dyknow-traffic": "1"}, files_sha256={"f": "0"}
+)
 
 
 class Interrupted(Exception):  # noqa: N818, it stands for a signal
