@@ -11,6 +11,7 @@ import numpy.typing as npt
 from dyknow.time import MILLISECOND
 from networks.errors import NetworkError
 from networks.roads import RoadMap
+from networks.signals import SignalState
 from traffic.errors import TrafficError
 from traffic.explaining.kept import KeptRun, open_kept_run, records_of
 from traffic.explaining.walking import Walker
@@ -19,7 +20,7 @@ from traffic.reporting.films import EmbeddedFilm, embedded_film
 from traffic.reporting.items import items_of
 from traffic.reporting.pages import embedded, render
 from traffic.reporting.reasons import conditions_of, processes_of, reasons_of
-from traffic.reporting.scores import score_rows
+from traffic.reporting.scores import ScoreRow, score_rows
 from traffic.reporting.tracks import tracks_of
 from traffic.results import RunResult, Score
 from traffic.watching import OnProgress
@@ -76,14 +77,21 @@ def page_of_runs(results: Mapping[Path, RunResult], total: Mapping[str, Score]) 
             "title": f"{len(results)} runs",
             "total": score_rows(total),
             "runs": [
-                (str(folder), result, list(_facts(result)), score_rows(result.score))
+                (str(folder), result, list(_facts(result)), _by_kind(result.score, total))
                 for folder, result in results.items()
             ],
-            "kinds": list(total),
             "seconds": sum(result.timing.simulated_s for result in results.values()),
             "recognitions": sum(len(result.recognitions) for result in results.values()),
         },
     )
+
+
+def _by_kind(
+    score_by_kind: Mapping[str, Score], kinds: Mapping[str, Score]
+) -> list[ScoreRow | None]:
+    """Return the row of each of some kinds; None for a kind that a run could not recognise."""
+    rows = dict(zip(score_by_kind, score_rows(score_by_kind), strict=True))
+    return [rows.get(kind) for kind in kinds]
 
 
 @dataclass
@@ -168,7 +176,8 @@ def _signals(run: KeptRun, road_map: RoadMap) -> dict[str, list[tuple[float, str
         return shown
     for row in records_of(run.events.sort_values("time", kind="stable")):
         arguments = list(row["arguments"])
-        if len(arguments) == 1 and arguments[0] in names:
+        is_state = str(row["after"]).upper() in SignalState.__members__
+        if is_state and len(arguments) == 1 and arguments[0] in names:
             shown.setdefault(arguments[0], []).append((row["time"] / MILLISECOND, row["after"]))
     return shown
 

@@ -16,7 +16,7 @@ from traffic.reporting.pages import write_page
 from traffic.reporting.reports import read_report
 from traffic.reporting.runs import page_of_run, page_of_runs
 from traffic.request import RunRequest
-from traffic.results import Manoeuvre, read_result, write_result
+from traffic.results import Manoeuvre, Score, read_result, write_result
 from traffic.running import run_scenario
 from traffic.totals import total_score
 
@@ -256,14 +256,17 @@ def test_a_page_that_lacks_all_but_the_result_works(finished_run, tmp_path):
 
 
 def test_several_runs_have_one_page(finished_run):
-    """The counts are added up, and those of each run are there; no address of elsewhere."""
+    """The counts are added up, and those of each run are there, if it looked for the kind."""
     result = finished_run.result
-    results = {Path("runs/a"): result, Path("runs/b"): result}
+    other = result.model_copy(update={"score": {"red_light": Score.of(4, 3, 2, 0)}})
+    results = {Path("runs/a"): result, Path("runs/b"): result, Path("runs/c"): other}
 
-    page = page_of_runs(results, total_score([result, result]))
+    page = page_of_runs(results, total_score(list(results.values())))
 
     turn = result.score["turn"]
     assert f"{2 * turn.correct} of {2 * turn.truth}" in page
     assert page.count(f"{turn.correct} of {turn.truth}") >= 2
+    assert page.count("2 of 4") >= 2
+    assert page.count("not looked for") == len(result.score) + 2
     assert "runs/b" in page
     assert set(re.findall(r"https?://[^\s\"'<)]+", page)) <= {NAMESPACE}

@@ -68,5 +68,6 @@
     });
   });
   addEventListener("hashchange", readHash);
+  setTime(0);
   readHash();
 })();

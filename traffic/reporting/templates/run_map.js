@@ -203,10 +203,9 @@ const mapView = (() => {
           }),
         ),
     );
-    const lamps = { RED: "#e5484d", YELLOW: "#f0b429", GREEN: "#30a46c", RED_YELLOW: "#f08229" };
     for (const [name, line] of signals) {
       const last = (data.signals[name] ?? []).findLast(([t]) => t <= state.t);
-      line.setAttribute("stroke", lamps[(last?.[1] ?? "").toUpperCase()] ?? "var(--paint)");
+      line.setAttribute("stroke", LAMPS[last?.[1]] ?? "var(--paint)");
     }
     byId("now").replaceChildren(
       ...going().slice(0, 8).map((each) =>

@@ -6,6 +6,7 @@ const VERDICTS = {
   outside: ["not in view", "it happened, but not wholly in view; it does not count"],
   unjudged: ["not judged", "no truth is known of it"],
 };
+const LAMPS = { red: "#d63a40", yellow: "#e0a512", green: "#2a9461", red_yellow: "#e0761a" };
 const words = (name) => name.replaceAll("_", " ");
 const seconds = (ms) => `${(ms / 1000).toFixed(ms % 100 ? 2 : 1)} s`;
 const plural = (n, word) => `${n} ${word}${n === 1 ? "" : "s"}`;

@@ -54,7 +54,7 @@ const why = (() => {
         const [a, b] = [x(from), x(to)];
         const empty = value === null || value === "false" || value.startsWith("no_");
         if (empty) drawing.append(svg("line", { x1: a, x2: b, y1: middle, y2: middle, stroke: colour, "stroke-width": 1.4, "stroke-dasharray": value === null ? "2 3" : "none", opacity: 0.8 }));
-        else drawing.append(svg("rect", { x: a, y: middle - 7, width: Math.max(1.5, b - a), height: 14, rx: 3, fill: colour, stroke: "var(--card)" }, svg("title", {}, `${value}, ${seconds(from)} to ${seconds(to)}`)));
+        else drawing.append(svg("rect", { x: a, y: middle - 7, width: Math.max(1.5, b - a), height: 14, rx: 3, fill: owner ? colour : (LAMPS[value] ?? colour), stroke: "var(--card)" }, svg("title", {}, `${value}, ${seconds(from)} to ${seconds(to)}`)));
         if (!empty && b - a > 6.6 * value.length + 6)
           drawing.append(svg("text", { x: (a + b) / 2, y: middle + 4, "text-anchor": "middle", style: "fill:var(--card);font-size:11px;pointer-events:none" }, value));
       }
