@@ -215,6 +215,10 @@ const mapView = (() => {
     );
   }
 
+  const zoom = (factor) =>
+    look({ ...shown, w: Math.min(shown.w * factor, 2 * whole.w), h: Math.min(shown.h * factor, 2 * whole.h) });
+  byId("closer").addEventListener("click", () => zoom(1 / 1.6));
+  byId("farther").addEventListener("click", () => zoom(1.6));
   byId("whole").addEventListener("click", () => look({ ...whole }));
   byId("names").addEventListener("change", drawCars);
   let held = null;
@@ -231,10 +235,9 @@ const mapView = (() => {
   box.addEventListener("wheel", (e) => {
     if (!e.ctrlKey && !e.altKey) return;
     e.preventDefault();
-    const factor = Math.exp(e.deltaY / 400);
-    look({ ...shown, w: Math.min(shown.w * factor, 2 * whole.w), h: Math.min(shown.h * factor, 2 * whole.h) });
+    zoom(Math.exp(e.deltaY / 400));
   }, { passive: false });
-  box.addEventListener("dblclick", () => look({ ...shown, w: shown.w / 1.8, h: shown.h / 1.8 }));
+  box.addEventListener("dblclick", () => zoom(1 / 1.6));
 
   watchers.time.push(drawCars);
   watchers.choice.push(() => (chosenItem() ? lookAt(chosenItem()) : look({ ...whole })));
