@@ -57,7 +57,7 @@ import traffic.bundled
 import traffic.checking
 data = traffic.bundled.data_folder()
 print(data)
-for path in (*data.glob("specifications/*"), *data.glob("chronicles/*")):
+for path in (*data.rglob("*.kpl"), *data.rglob("*.chronicle")):
     assert not traffic.checking.faults_of_file(path)
 sys.argv = ["traffic", "scenarios"]
 traffic.__main__.main()

@@ -14,8 +14,10 @@ from dyknow.kpl.parser import read_specification
 from dyknow.mtl.declarations import document_faults
 from dyknow.mtl.parser import parse_document
 from dyknow.source_text import Span
-from traffic.errors import RequestError, ScenarioError
+from traffic.errors import ExperimentError, RequestError, ScenarioError
+from traffic.experiments.reading import check_design, read_design
 from traffic.scenarios import read_scenario
+from traffic.scenarios.toml_files import read_toml
 
 __all__ = ["faults_of_file", "warnings_of_file"]
 
@@ -27,13 +29,13 @@ def faults_of_file(path: Path) -> list[str]:
     """Return a text for each fault of the file, beginning with its place.
 
     The ending of the name says what it is: `.kpl`, `.chronicle`, `.mtl` (a formula) or `.toml` (a
-    scenario). That a file cannot be read is its only fault then.
+    scenario, or a design of experiments). That a file cannot be read is its only fault then.
 
     Raises:
         RequestError: The ending is none of these.
     """
     if path.suffix == ".toml":
-        return _faults_of_scenario(path)
+        return _faults_of_toml(path)
     find = _FAULTS_BY_ENDING.get(path.suffix)
     if find is None:
         endings = ", ".join([*_FAULTS_BY_ENDING, ".toml"])
@@ -59,10 +61,14 @@ def warnings_of_file(path: Path) -> list[str]:
     return [f"{span.place}: warning: {message}\n{span.excerpt()}" for span, message in found]
 
 
-def _faults_of_scenario(path: Path) -> list[str]:
+def _faults_of_toml(path: Path) -> list[str]:
+    """Return the faults of a design, if the file asks for measures, or else of a scenario."""
     try:
-        read_scenario(path)
-    except ScenarioError as error:
+        if "measures" in read_toml(path, ScenarioError)[1]:
+            check_design(path, read_design(path))
+        else:
+            read_scenario(path)
+    except (ExperimentError, ScenarioError) as error:
         return list(error.faults)
     return []
 

@@ -8,6 +8,7 @@ Most samples of a generator reach its receivers as they are. So the delays are c
 the generator, and a stream counts only what is different: what it leaves out and what it makes.
 """
 
+import math
 from dataclasses import dataclass
 from typing import Any, Protocol
 
@@ -127,12 +128,13 @@ class Delays:
 
     def percentile(self, percent: float) -> Duration:
         """Return a delay that *percent* of all do not exceed."""
-        left = self.samples * (1 - percent / 100)
-        for at in range(_N_BINS - 1, -1, -1):
-            left -= self.bins[at]
-            if left < 0:
-                return Duration(min((at + 1) * self.width, self.largest))
-        return Duration(0)
+        rank = max(1, math.ceil(self.samples * percent / 100))
+        counted = self.samples - sum(self.bins)  # those without a delay are in no bin
+        for at, number in enumerate(self.bins):
+            if counted >= rank:
+                return Duration(min(at * self.width, self.largest))
+            counted += number
+        return self.largest
 
     def copy(self) -> "Delays":
         """Return the same figures once more."""

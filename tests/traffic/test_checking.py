@@ -13,7 +13,7 @@ WRITTEN = sorted(
 )
 
 
-@pytest.mark.parametrize("path", WRITTEN, ids=lambda path: path.name)
+@pytest.mark.parametrize("path", WRITTEN, ids=lambda path: str(path.relative_to(data_folder())))
 def test_what_comes_with_the_program_has_no_faults(path):
     """Specification, chronicles and scenarios are as they should be."""
     assert faults_of_file(path) == []
@@ -107,7 +107,7 @@ def test_chronicles_are_warned_of(tmp_path):
         f"{path}:2:1: warning: 'D' is not used",
         f"{path}:3:1: warning: 'm' is not used",
         (
-            f"{path}:6:5: warning: chronicle 'c' may await this event without end: nothing limits how"
-            " long after 't1' 't2' can be"
+            f"{path}:6:5: warning: chronicle 'c' may await this event without end: nothing"
+            " limits how long after 't1' 't2' can be"
         ),
     ]

@@ -69,7 +69,9 @@ def test_a_replay_can_be_recorded_and_replayed_in_turn(recorded_run, tmp_path):
     assert second.score == recorded_run.result.score
     assert read_result(tmp_path / "run") == first
     names = {path.name for path in (tmp_path / "run").iterdir()}
-    assert names == {"result.json", "origin.json", "network.json", "specification"}
+    assert names == {
+        "result.json", "origin.json", "network.json", "specification", "explanations",
+    }  # fmt: skip
     origins = [
         (folder / "origin.json").read_text() for folder in (recorded_run.folder, tmp_path / "run")
     ]
@@ -262,6 +264,8 @@ def test_who_knows_of_the_recorded_truth():
         "traffic/replaying.py",
         "traffic/recording/rebuilding.py",
         "traffic/recording/writing.py",
+        "traffic/regression/cutting.py",
+        "traffic/regression/regressing.py",
     }
 
 

@@ -98,11 +98,11 @@ def test_a_changed_specification_is_run(tmp_path):
     (tmp_path / "less.kpl").write_text(
         text.replace("sample every sample_period", "sample every 200")
         .replace("parameter sample_period = 100", "# no sample period")
-        .replace("stream recognised_overtakes = overtakes", "")
+        .replace("stream recognised_parking = parking", "")
     )
     result = run(tmp_path / "x", duration="3 s", specification=tmp_path / "less.kpl")
 
-    assert "overtakes" not in result.timing.stages
+    assert "parking" not in result.timing.stages
     assert "turns" in result.timing.stages
     copy = tmp_path / "x" / "specification" / "less.kpl"
     assert copy.read_text() == (tmp_path / "less.kpl").read_text()
@@ -115,7 +115,9 @@ def test_faults_of_a_changed_specification_have_places(tmp_path):
     text = bundled_specification().read_text("utf-8")
     path = tmp_path / "bad.kpl"
     path.write_text(
-        text.replace("= Moving(cars", "= Mooving(cars").replace("(car_pairs,", "(car_pears,")
+        text.replace("= Moving(cars", "= Mooving(cars").replace(
+            "Headways(cars,", "Headways(carts,"
+        )
     )
 
     with pytest.raises(SpecificationErrors) as caught:

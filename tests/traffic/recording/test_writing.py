@@ -22,7 +22,8 @@ from traffic.world import World, camera_of, generators_of
 
 CROSSING = data_folder() / "networks" / "crossing" / "crossing.net.xml"
 VISION = {
-    "vehicles", "camera_pose", "percepts[vision]", "world_objects", "on_road_objects", "cars",
+    "vehicles", "signals[truth]", "camera_pose", "percepts[vision]", "world_objects",
+    "on_road_objects", "cars",
 }  # fmt: skip
 
 
