@@ -46,14 +46,15 @@ def test_each_table_comes_out_once_half_of_the_way_later():
 
 
 def test_the_way_tells_what_the_filter_has_not_seen_yet():
-    """A car that brakes stops travelling when it does, even if it is believed to go on."""
-    braking = [10.0] * 15 + [0.0] * 30
-    believed = [10.0] * 25 + [0.0] * 20
+    """A car that brakes stops travelling half a second before the filter believes it to."""
+    braking = [10.0] * 15 + [0.0] * 40
+    believed = [10.0] * 15 + [10.0 - 0.5 * i for i in range(20)] + [0.0] * 20
 
     found = travelling(braking, believed=believed)
 
     first = next(time for time, code in found if code == 0)
-    assert abs(first - 15 * PERIOD) <= 5 * PERIOD
+    filtered = next(i for i, speed in enumerate(believed) if speed < 3) * PERIOD
+    assert 15 * PERIOD <= first <= filtered - 5 * PERIOD
 
 
 def test_a_new_car_is_judged_by_its_speed():
