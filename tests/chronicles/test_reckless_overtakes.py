@@ -119,6 +119,17 @@ def test_an_overtake_that_is_broken_off_is_told_when_the_car_is_back_in_line(roa
     assert (road.found[0].begin, road.found[0].end) == (milliseconds(1000), milliseconds(8000))
 
 
+@pytest.mark.parametrize(("before", "found"), [(0, 1), (400, 1), (1000, 1), (1100, 0)])
+def test_who_swings_out_late_may_be_level_before_it_is_seen_out_of_the_line(road, before, found):
+    """Up to a second before; whoever is level in line for longer is a mistake about who is who."""
+    road.relate(3000 - before, "beside", "in_line")
+    road.relate(3000, "beside", "beside_left")
+    road.relate(6000, "behind")
+    road.relate(8000, "behind", "in_line")
+
+    assert road.names() == ["overtake_aborted"] * found
+
+
 def test_a_change_of_lanes_behind_another_is_nothing_broken_off(road):
     """Who never gets beside the other has not begun to overtake it."""
     road.relate(1000, "behind")

@@ -41,6 +41,23 @@ _ROOM_BEHIND = 25.0
 _WIDE = 1.9
 """Metres to the side within which somebody is in the way."""
 
+_ROOM_TO_RETURN = 10.0
+"""Metres that are left to whoever is ahead on the own lane when the driver has come back."""
+
+_MINDS = 3.0
+_BRAKES = 1.5
+"""Seconds before two meet on one side: when who comes makes room, and when it brakes."""
+
+_CLEAR = 2.9
+"""Metres between the middles of two that meet, from which they pass each other."""
+
+_SHOULDER = 2.8
+_SIDEWAYS = 1.5
+"""Metres by which who comes makes room at most, and m/s at which it does."""
+
+_CREEPING = 4.0
+"""m/s to which it brakes."""
+
 
 @dataclass(slots=True)
 class _Duo:
@@ -110,6 +127,24 @@ class _Duo:
                 return False
         return True
 
+    def sees_way_free(self, passing: "_Passing") -> bool:
+        """Whether nobody comes before the driver is back, and there is room for it then."""
+        driver, vehicles = self.driver, self.stage.api.vehicle
+        place = self.other.s + self.in_front(passing.ahead) + passing.faster * self.going
+        for each in self.stage.vehicles:
+            if each in (driver.vehicle, self.other.vehicle):
+                continue
+            s, aside = driver.path.place_of(*vehicles.getPosition(each))
+            if abs(aside) < _WIDE:
+                rear = s - vehicles.getLength(each)
+                if s > self.other.s and rear < place + _ROOM_TO_RETURN:
+                    return False
+            elif abs(aside - self.aside) < _WIDE and _comes_at(driver, each, self.stage):
+                closing = self.speed + passing.faster + vehicles.getSpeed(each)
+                if 0 < s - driver.s < closing * (passing.lasts(self) + self.going):
+                    return False
+        return True
+
     def _safe_speed(self) -> float:
         """Return how fast the driver may be because of anybody else than the other driver."""
         ahead = self.stage.api.vehicle.getLeader(self.driver.vehicle, _ROOM_AHEAD)
@@ -123,13 +158,32 @@ class _Duo:
         return was + (target - was) * float((1 - np.cos(np.pi * share)) / 2)
 
 
+@dataclass(frozen=True, slots=True)
+class _Passing:
+    """How a driver passes another.
+
+    Attributes:
+        faster: By how much it is faster than the other, m/s.
+        ahead: Gap between the bumpers at which it begins to come back, metres.
+    """
+
+    faster: float
+    ahead: float
+
+    def lasts(self, duo: _Duo) -> float:
+        """Return about how long it is until it begins to come back, seconds."""
+        way = duo.in_front(self.ahead) - duo.lead
+        return way / self.faster + self.faster / _ACCELERATION / 2
+
+
 def overtake(act: Overtake, stage: Stage, generator: np.random.Generator) -> Iterator[None]:
     """Close up, go aside, pass the other, come back, and leave both alone after that."""
     faster = generator.uniform(*act.faster)
     ahead = generator.uniform(*act.ahead)
     duo = yield from _begin(act, stage, generator)
-    yield from _await_room(duo)
-    met = _meeting(act.oncoming, duo, faster, ahead, generator)
+    passing = _Passing(faster, ahead)
+    yield from _await_room(duo, passing if act.oncoming is not None else None)
+    met = _meeting(act.oncoming, duo, passing, generator)
     next(met)
     for target, front in ((duo.aside, duo.in_front(ahead)), (0.0, -np.inf)):
         begun, was = stage.now, duo.driver.aside
@@ -204,10 +258,12 @@ def _begin(act: Pair, stage: Stage, generator: np.random.Generator) -> Generator
     return duo
 
 
-def _await_room(duo: _Duo) -> Iterator[None]:
-    """Stay behind the other until nobody is in the way."""
+def _await_room(duo: _Duo, passing: _Passing | None = None) -> Iterator[None]:
+    """Stay behind the other until nobody is in the way, nor will be if it passes like this."""
     rear = duo.lead
-    while not duo.is_over and not duo.has_room():
+    while not duo.is_over and not (
+        duo.has_room() and (passing is None or duo.sees_way_free(passing))
+    ):
         duo.hold(rear, 0.0, _EAGER)
         yield
 
@@ -239,11 +295,7 @@ def _stay(duo: _Duo, lead: float, aside: float, duration: float) -> Iterator[Non
 
 
 def _meeting(
-    oncoming: Oncoming | None,
-    duo: _Duo,
-    faster: float,
-    ahead: float,
-    generator: np.random.Generator,
+    oncoming: Oncoming | None, duo: _Duo, passing: _Passing, generator: np.random.Generator
 ) -> Iterator[None]:
     """Let somebody come the other way, who meets the driver as long after it as wanted."""
     yield
@@ -251,9 +303,8 @@ def _meeting(
         return
     stage = duo.stage
     speed = generator.uniform(*oncoming.speed)
-    way = duo.in_front(ahead) - duo.lead
-    lasting = way / faster + faster / _ACCELERATION / 2 + _seconds(oncoming.spare, generator)
-    distance = (duo.speed + faster + speed) * lasting
+    lasting = passing.lasts(duo) + _seconds(oncoming.spare, generator)
+    distance = (duo.speed + passing.faster + speed) * lasting
     roads = tuple(stage.ways(oncoming.route))
     path = stage.lane_path(roads, oncoming.lane)
     place, _ = path.place_of(*duo.driver.path.point(duo.driver.s + distance))
@@ -265,8 +316,43 @@ def _meeting(
         yield
     driver = PathDriver(stage, vehicle, path)
     while not driver.is_at_end and stage.is_here(vehicle):
-        driver.move(speed)
+        _come_towards(driver, stage, speed)
         yield
+
+
+def _come_towards(driver: PathDriver, stage: Stage, speed: float) -> None:
+    """Let the coming step happen to who comes: it makes room for who is on its side, or brakes."""
+    time, room = _next_met(driver, stage)
+    target = -min(_CLEAR - room, _SHOULDER) if room < _CLEAR else 0.0
+    aside = towards(driver.aside, target, _SIDEWAYS * stage.step_length)
+    would_touch = time < _BRAKES and room - driver.aside < _CLEAR
+    drive_on(driver, stage, _CREEPING if would_touch else speed, aside)
+
+
+def _next_met(driver: PathDriver, stage: Stage) -> tuple[float, float]:
+    """Return in how many seconds a driver meets the next one who comes at it, and where.
+
+    Returns:
+        The seconds, and how far to the left of its path that one is, metres; both infinite if
+        it meets nobody soon.
+    """
+    vehicles = stage.api.vehicle
+    met = np.inf, np.inf
+    for each in stage.vehicles:
+        if not _comes_at(driver, each, stage):
+            continue
+        s, aside = driver.path.place_of(*vehicles.getPosition(each))
+        closing = driver.speed + vehicles.getSpeed(each)
+        both = vehicles.getLength(each) + vehicles.getLength(driver.vehicle)
+        if -both < s - driver.s < closing * _MINDS and abs(aside) < _CLEAR:
+            met = min(met, (max(s - driver.s, 0.0) / max(closing, 0.1), aside))
+    return met
+
+
+def _comes_at(driver: PathDriver, vehicle: str, stage: Stage) -> bool:
+    """Whether a vehicle goes against the direction in which a driver goes."""
+    heading = np.radians(90.0 - stage.api.vehicle.getAngle(vehicle))
+    return bool(np.cos(heading - driver.path.heading(driver.s)) < 0)
 
 
 def _seconds(span: DurationRange, generator: np.random.Generator) -> float:

@@ -75,6 +75,23 @@ def test_who_comes_towards_meets_the_driver_in_time(tmp_path: Path) -> None:
     assert times[met] - times[returning] == pytest.approx(3.0, abs=0.8)
 
 
+def test_who_comes_makes_room_for_who_is_on_its_side(tmp_path: Path) -> None:
+    """Both pass each other side by side, although the driver is not back on its lane yet."""
+    oncoming = Oncoming(
+        types={"car": 1}, route=("east_west",), lane=1, speed=(12, 12), spare=seconds(0.5)
+    )
+    who = {**WHO, "lane": 1}
+    act = Overtake(kind="overtake", faster=(6, 6), ahead=(8, 8), oncoming=oncoming, **who)
+    run = avenue(act, tmp_path)
+
+    met = [frame.vehicles for frame in run if len(frame.vehicles) >= 3]
+    offset = np.array([cars["position"][2] - cars["position"][1] for cars in met])
+    level = np.abs(offset[:, 0]) < 6
+    assert level.any()
+    assert offset[level, 1].min() > 2.2
+    assert min(cars["speed"][2] for cars in met) > 3.5
+
+
 def test_who_breaks_off_gets_level_and_falls_back_as_often_as_drawn(tmp_path: Path) -> None:
     """Never in front, and behind the other on its lane in between."""
     act = AbortOvertake(
