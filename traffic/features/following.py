@@ -31,6 +31,10 @@ _DETOUR = 1.0
 _SLACK = 1.25
 """What keeps a relation true may be so much more than what makes it true."""
 
+_SURER = 2.0
+"""Times the certainty with which tailgating begins: the estimated speed of who closes up, and
+brakes, is late, so that the time gap seems to be short before it is."""
+
 
 class Following(Reactive):
     """Computes of each pair of cars, one behind the other, whether the first follows the second.
@@ -44,9 +48,10 @@ class Following(Reactive):
       is faster than *fast*.
 
     A relation that is true stays so up to a time gap one and a quarter times as long, and down to
-    speeds one and a quarter times lower. Time gaps and places in the lane count with
-    *certainty* standard deviations against every change. Cars are in one lane if they are at
-    most *offset* aside. Where ways part, a car may have a next one on each of them.
+    speeds one and a quarter times lower. Time gaps, places in the lane and the speed of a
+    tailgater count with *certainty* standard deviations against every change; time gaps with twice
+    as many against the begin of tailgating. Cars are in one lane if they are at most *offset*
+    aside. Where ways part, a car may have a next one on each of them.
 
     Args:
         near: Time gap up to which a car follows.
@@ -82,10 +87,12 @@ class Following(Reactive):
         (sample,) = inputs
         headways: Table = sample.value
         self._state.align(headways.ids)
-        speed = headways["speed"]
+        speed, margin = headways["speed"], self._certainty * headways["speed_deviation"]
         slower = np.minimum(speed, headways["speed_of_second"])
-        time_gap, margin = headways["time_gap"], self._certainty * headways["deviation"]
-        at_least, at_most = time_gap - margin, time_gap + margin
+        time_gap, deviation = headways["time_gap"], headways["deviation"]
+        at_least = time_gap - self._certainty * deviation
+        at_most = time_gap + self._certainty * deviation
+        surely_at_most = time_gap + _SURER * self._certainty * deviation
         is_next = self._next_ahead(headways, at_least <= _SLACK * self._near)
         self._hold(
             "follows",
@@ -94,8 +101,8 @@ class Following(Reactive):
         )
         self._hold(
             "tailgates",
-            is_next & (at_most < self._close) & (speed > self._fast),
-            is_next & (at_least < _SLACK * self._close) & (_SLACK * speed > self._fast),
+            is_next & (surely_at_most < self._close) & (speed - margin > self._fast),
+            is_next & (at_least < _SLACK * self._close) & (_SLACK * (speed + margin) > self._fast),
         )
         relations = {name: self._state[name] for name in FOLLOWING}
         columns = {"first": headways["first"], "second": headways["second"], **relations}

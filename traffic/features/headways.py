@@ -43,7 +43,8 @@ class Headways(Reactive):
     * `deviation`: standard deviation of the time gap, seconds;
     * `aside`: metres that they are from being one behind the other, across the road;
     * `aside_deviation`: standard deviation of that, metres;
-    * `speed`, `speed_of_second`: m/s.
+    * `speed`, `speed_of_second`: m/s;
+    * `speed_deviation`: standard deviation of the first of these, m/s.
 
     A car is active while it was observed within *active_for*.
 
@@ -83,6 +84,7 @@ class Headways(Reactive):
             "aside_deviation": np.sqrt(cars["d_variance"][first] + cars["d_variance"][second]),
             "speed": cars["speed"][first],
             "speed_of_second": cars["speed"][second],
+            "speed_deviation": np.sqrt(cars["speed_variance"][first]),
         }
         return Table("headway", pair_id(cars.ids[first], cars.ids[second]), columns)
 

@@ -12,7 +12,7 @@ from traffic.features.following import FOLLOWING, Following
 from traffic.features.pairs import pair_id
 
 NEAR, CLOSE, MOVING, FAST, OFFSET, CERTAINTY = 2.5, 0.7, 3.0, 8.0, 1.6, 1.0
-SLACK = 1.25
+SLACK, SURER = 1.25, 2.0
 
 
 def unit() -> Following:
@@ -39,6 +39,7 @@ def headway(first: int = 1, second: int = 2, **values: float) -> dict[str, float
         "aside_deviation": 0.0,
         "speed": 12.0,
         "speed_of_second": 12.0,
+        "speed_deviation": 0.0,
     }
     return usual | values
 
@@ -117,6 +118,22 @@ def test_an_uncertain_time_gap_changes_nothing():
     }
 
 
+def test_tailgating_begins_when_it_is_surer():
+    """What suffices to stay within a bound by one deviation does not make a car tailgate."""
+    assert after([headway(time_gap=0.55, deviation=0.1)])[1, 2] == {"follows"}
+    assert after([headway(time_gap=0.45, deviation=0.1)])[1, 2] == {"follows", "tailgates"}
+
+
+def test_an_uncertain_speed_changes_nothing():
+    """A speed must be on the other side of a bound by more than its deviation."""
+    close = headway(time_gap=0.5)
+    slower = headway(time_gap=0.5, speed=6.0, speed_deviation=1.0)
+
+    assert after([headway(time_gap=0.5, speed=8.5, speed_deviation=1.0)])[1, 2] == {"follows"}
+    assert after([close], [slower])[1, 2] == {"follows", "tailgates"}
+    assert after([close], [slower | {"speed_deviation": 0.2}])[1, 2] == {"follows"}
+
+
 def test_a_pair_that_was_gone_begins_anew():
     """What held before a pair was out of reach does not count any more."""
     assert after([headway(time_gap=0.5)], [], [headway(time_gap=0.8)])[1, 2] == {"follows"}
@@ -135,12 +152,13 @@ def frames_of_pairs(draw):
                     i,
                     j,
                     ahead=draw(st.integers(1, 5)) * 8.0,
-                    time_gap=draw(st.sampled_from([0.3, 0.65, 0.75, 0.95, 2.4, 2.8, 3.3])),
+                    time_gap=draw(st.sampled_from([0.3, 0.55, 0.65, 0.75, 0.95, 2.4, 2.8, 3.3])),
                     deviation=draw(st.sampled_from([0.0, 0.1])),
                     aside=draw(st.sampled_from([0.0, 1.5, 1.8, 3.2])),
                     aside_deviation=draw(st.sampled_from([0.0, 0.3])),
                     speed=draw(st.sampled_from([2.0, 2.7, 5.0, 7.0, 12.0])),
                     speed_of_second=draw(st.sampled_from([2.0, 2.7, 12.0])),
+                    speed_deviation=draw(st.sampled_from([0.0, 0.5, 5.0])),
                 )
                 for i, j in chosen
             ]
@@ -172,15 +190,16 @@ def naive(frames):
         for key, p in by_pair.items():
             if "lane" not in now[key] or someone_between(key, by_pair, now):
                 continue
-            for name, limit, speed, least in (
-                ("follows", NEAR, min(p["speed"], p["speed_of_second"]), MOVING),
-                ("tailgates", CLOSE, p["speed"], FAST),
+            slower = min(p["speed"], p["speed_of_second"])
+            for name, limit, surer, speed, spread, least in (
+                ("follows", NEAR, 1.0, slower, 0.0, MOVING),
+                ("tailgates", CLOSE, SURER, p["speed"], p["speed_deviation"], FAST),
             ):
-                begins = p["time_gap"] + p["deviation"] <= limit and speed > least
+                begins = p["time_gap"] + surer * p["deviation"] <= limit and speed - spread > least
                 stays = (
                     name in before.get(key, ())
                     and p["time_gap"] - p["deviation"] <= SLACK * limit
-                    and SLACK * speed > least
+                    and SLACK * (speed + spread) > least
                 )
                 if begins or stays:
                     now[key].add(name)

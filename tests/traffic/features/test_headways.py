@@ -128,6 +128,26 @@ def test_the_deviation_is_that_of_errors_drawn_at_random():
     assert deviation == pytest.approx(float(np.std(gap / speed)), rel=0.03)
 
 
+def test_each_pair_has_the_deviation_of_the_speed_of_the_first():
+    """The speed of the first car is as uncertain in a pair as it is."""
+    cars = cars_on(
+        STRAIGHT, [0, 0, 0], [50.0, 67.0, 80.0], speed_variance=np.array([0.04, 0.25, 1.0])
+    )
+
+    found = headways(STRAIGHT, cars)
+
+    deviations = {
+        (first, second): deviation
+        for first, second, deviation in zip(
+            found["first"].tolist(),
+            found["second"].tolist(),
+            found["speed_deviation"].tolist(),
+            strict=True,
+        )
+    }
+    assert deviations == {(10, 11): 0.2, (10, 12): 0.2, (11, 12): 0.5}
+
+
 def test_a_car_that_was_not_observed_for_long_is_in_no_pair():
     """Who has not been seen for longer than the set time does not count."""
     cars = cars_on(STRAIGHT, [0, 0], [50.0, 70.0], observed_at=[0, 2 * SECOND])
