@@ -8,7 +8,7 @@ Read in this order:
 - `features`: what cars do, and where they are to each other
 - `scenarios` and `sumo`: what drives where; `truth` and `scoring`: what really happened, and how
   well that was recognised
-- `results`: a run as a value and a folder; `totals`: of several; `origin`: what a run was made from
+- `results`: a run as a value and a folder; `totals`: of several; `origin`: what it was made from
 - `recording`: every stream of a run in a file; `replaying`: the same from that file again;
   `judging`: whether it satisfies a specification; `regression`: recorded scenarios, replayed
 - `explaining`: from a recognition down to the images

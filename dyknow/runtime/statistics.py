@@ -134,7 +134,7 @@ class Delays:
             if counted >= rank:
                 return Duration(min(at * self.width, self.largest))
             counted += number
-        return self.largest
+        return Duration(self.largest)
 
     def copy(self) -> "Delays":
         """Return the same figures once more."""
