@@ -85,7 +85,7 @@ def local_workers(number: int) -> Iterator[Engine]:
             threads_per_worker=1,
             processes=True,
             host="127.0.0.1",
-            dashboard_address=None,
+            dashboard_address="127.0.0.1:0",
             memory_limit=0,
             env={"OPENCV_FOR_THREADS_NUM": "1"},
         ) as cluster,

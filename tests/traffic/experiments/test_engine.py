@@ -59,7 +59,7 @@ def test_a_cluster_whose_workers_have_threads_is_refused() -> None:
             processes=False,
             protocol="tcp",
             host="127.0.0.1",
-            dashboard_address=None,
+            dashboard_address="127.0.0.1:0",
         ) as cluster,
         pytest.raises(ExperimentError, match="one state per process"),
         cluster_at(cluster.scheduler_address),
