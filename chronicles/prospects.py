@@ -49,6 +49,13 @@ class PartialInstance:
     events: tuple[Event, ...]
     awaited: tuple[Awaited, ...]
 
+    def is_too_late(self, clock: int) -> bool:
+        """Return whether something that is awaited should have come before the clock.
+
+        The first event of all may be a late one of a chronicle whose others were never seen.
+        """
+        return any(each.latest is not None and each.latest < clock for each in self.awaited)
+
 
 @dataclass(frozen=True, slots=True)
 class EndedInstance:

@@ -189,11 +189,12 @@ class Recogniser:
     def partial_instances(self) -> list[PartialInstance]:
         """Return every partial instance with what it still waits for, and until when."""
         clock = self._clock or 0
-        return [
+        listed = (
             partial_instance(matcher.model, instance, clock)
             for matcher in self._matchers.values()
             for instance in matcher.instances()
-        ]
+        )
+        return [each for each in listed if not each.is_too_late(clock)]
 
     def size(self) -> int:
         """Return how many instances, deadlines, counted events and reports are kept."""
