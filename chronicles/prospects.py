@@ -108,12 +108,13 @@ def _intervals(
     model: Model, instance: Instance, clock: int, values: Mapping[str, str]
 ) -> Iterator[Awaited]:
     for counter in model.counters:
+        begin = instance.times[counter.begin] + counter.begin_offset
         end = instance.times[counter.end] + counter.end_offset
-        if end > clock:
+        if end > max(begin, clock):
             event_type = _with_values(counter.pattern.event_type, values)
             yield Awaited(
                 text_of(replace(counter.predicate, event_type=event_type)),
-                TimePoint(instance.times[counter.begin] + counter.begin_offset),
+                TimePoint(begin),
                 TimePoint(end),
             )
 

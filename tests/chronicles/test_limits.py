@@ -179,3 +179,22 @@ def test_damaged_files_are_read_or_refused(text: str) -> None:
         assert parse_chronicles(print_chronicles(file)) == file
         if not faults(file):
             assert len(models_from_chronicles(file)) == len(file.chronicles)
+
+
+def test_nothing_is_listed_whose_time_is_over():
+    """Neither an event that should have come before, nor an interval without length."""
+    text = """
+        chronicle early { event(a, t) event(n, t + 1) }
+        chronicle empty { event(n, t) event(a, u) occurs(0, 1, n, (t, t + 9)) noevent(n, (u + 9, t)) }
+    """
+    recogniser = Recogniser(models_from_chronicles(parse_chronicles(text)))
+    recogniser.push(0, [Event("n", (), None, None, 0)])
+    before = [each.chronicle for each in recogniser.partial_instances()]
+    recogniser.push(1_000_000, [Event("a", (), None, None, 1_000_000)])
+
+    assert "early" not in before
+    assert all(
+        awaited.latest is None or awaited.latest >= max(awaited.earliest, 0)
+        for each in recogniser.partial_instances()
+        for awaited in each.awaited
+    )

@@ -94,9 +94,15 @@ class Stage:
             name,
             departLane=_BEST if entrance.lane is None else str(entrance.lane),
             departPos="base" if entrance.place is None else f"{entrance.place:.3f}",
-            departSpeed="max" if entrance.speed is None else f"{entrance.speed:.3f}",
+            departSpeed="max" if entrance.speed is None else f"{self._slowed(name, entrance):.3f}",
         )
         return name
+
+    def _slowed(self, vehicle_type: str, entrance: Entrance) -> float:
+        """Return the speed at which a vehicle may come in; above its limit SUMO gives up."""
+        limit: float = self.api.lane.getMaxSpeed(f"{entrance.roads[0]}_{entrance.lane or 0}")
+        factor: float = self.api.vehicletype.getSpeedFactor(vehicle_type)
+        return min(entrance.speed or 0.0, limit * factor)
 
     def ways(self, roads: Sequence[str]) -> list[str]:
         """Return all roads from the first to the last of *roads*.
