@@ -185,7 +185,9 @@ def test_nothing_is_listed_whose_time_is_over():
     """Neither an event that should have come before, nor an interval without length."""
     text = """
         chronicle early { event(a, t) event(n, t + 1) }
-        chronicle empty { event(n, t) event(a, u) occurs(0, 1, n, (t, t + 9)) noevent(n, (u + 9, t)) }
+        chronicle empty {
+            event(n, t) event(a, u) occurs(0, 1, n, (t, t + 9)) noevent(n, (u + 9, t))
+        }
     """
     recogniser = Recogniser(models_from_chronicles(parse_chronicles(text)))
     recogniser.push(0, [Event("n", (), None, None, 0)])
