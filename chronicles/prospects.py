@@ -49,12 +49,16 @@ class PartialInstance:
     events: tuple[Event, ...]
     awaited: tuple[Awaited, ...]
 
-    def is_too_late(self, clock: int) -> bool:
-        """Return whether something that is awaited should have come before the clock.
+    def is_possible(self, clock: int) -> bool:
+        """Return whether everything that is awaited can still come.
 
-        The first event of all may be a late one of a chronicle whose others were never seen.
+        An instance that has become impossible is dropped when its deadline is, which may be later
+        in the same instant.
         """
-        return any(each.latest is not None and each.latest < clock for each in self.awaited)
+        return all(
+            each.latest is None or max(clock, each.earliest) <= each.latest
+            for each in self.awaited
+        )
 
 
 @dataclass(frozen=True, slots=True)

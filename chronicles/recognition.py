@@ -194,7 +194,7 @@ class Recogniser:
             for matcher in self._matchers.values()
             for instance in matcher.instances()
         )
-        return [each for each in listed if not each.is_too_late(clock)]
+        return [each for each in listed if each.is_possible(clock)]
 
     def size(self) -> int:
         """Return how many instances, deadlines, counted events and reports are kept."""
