@@ -17,6 +17,7 @@ from traffic.running import run_scenario
 __all__ = ["Case", "Outcome", "cases_of", "request_of", "run_case", "settings_of"]
 
 _KEY_LENGTH = 32
+_SPECIFICATION = "specification"
 
 
 @dataclass(frozen=True, slots=True)
@@ -27,7 +28,7 @@ class Case:
         cell: Number of its cell, from 0.
         seed: Of everything random.
         scenario: Name of a bundled scenario, or a path beside *folder*.
-        settings: Values by name.
+        settings: Values by name; `specification` is a path beside *folder*.
         folder: That of the design.
     """
 
@@ -114,12 +115,17 @@ def settings_of(design: Design, cell: Cell) -> dict[str, Level]:
 def request_of(case: Case, out: Path) -> RunRequest:
     """Return the request of a case that writes its run to *out*.
 
+    Paths of scenarios and specifications are beside the design.
+
     Raises:
         TrafficError: A setting is impossible.
     """
     is_file = case.scenario.endswith(".toml")
     scenario = str(case.folder / case.scenario) if is_file else case.scenario
-    return RunRequest.from_settings(scenario, case.settings, seed=case.seed, out=out)
+    settings = dict(case.settings)
+    if _SPECIFICATION in settings:
+        settings[_SPECIFICATION] = str(case.folder / str(settings[_SPECIFICATION]))
+    return RunRequest.from_settings(scenario, settings, seed=case.seed, out=out)
 
 
 def run_case(case: Case) -> Outcome:

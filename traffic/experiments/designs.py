@@ -18,7 +18,7 @@ As TOML:
 In place of all combinations there may be a list of them (`[[cells]]`), or some that are drawn at
 random (`[sampling]` with `cells` and `seed`; a factor is then a list to choose from, or a range
 `{ from = 0, to = 10 }`). What can be set is what `traffic run` can set (`traffic.settings`);
-`scenario` can be a factor as well.
+`scenario` can be a factor as well. The path of a `specification` is beside the design, too.
 """
 
 import itertools

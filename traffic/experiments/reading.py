@@ -62,7 +62,7 @@ def read_design(path: Path, folder: Path | None = None) -> Design:
     ]
     if names:
         raise ExperimentError(*faults_of(names, source))
-    where = {"name": path.stem, "folder": folder or path.parent}
+    where = {"name": path.stem, "folder": (folder or path.parent).absolute()}
     try:
         design = Design.model_validate({**where, **values})
     except ValidationError as error:

@@ -5,7 +5,9 @@ from pathlib import Path
 import pytest
 
 from traffic.errors import ExperimentError
+from traffic.experiments.cases import cases_of, request_of
 from traffic.experiments.reading import bundled_designs, check_design, find_design, read_design
+from traffic.system import bundled_specification
 
 GOOD = """
 scenario = "rural"
@@ -77,3 +79,31 @@ def test_a_design_is_found_by_name_or_path() -> None:
     assert find_design("mine.toml") == Path("mine.toml")
     with pytest.raises(ExperimentError, match="did you mean 'smoke'"):
         find_design("smok")
+
+
+@pytest.mark.parametrize("where", ["[fixed]", "[factors]"])
+@pytest.mark.parametrize("is_absolute", [False, True])
+def test_a_specification_lies_beside_the_design(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, where: str, *, is_absolute: bool
+) -> None:
+    """A relative path is not one from the folder in which the program is called."""
+    beside = tmp_path / "mine.kpl"
+    beside.write_bytes(bundled_specification().read_bytes())
+    named = f'"{beside if is_absolute else beside.name}"'
+    value = named if where == "[fixed]" else f"[{named}]"
+    (tmp_path / "d.toml").write_text(GOOD.replace(where, f"{where}\nspecification = {value}"))
+    elsewhere = tmp_path / "elsewhere"
+    elsewhere.mkdir()
+    monkeypatch.chdir(elsewhere)
+    path = Path("..") / "d.toml"
+
+    checked = check_design(path, read_design(path))
+    case = next(cases_of(checked.design))
+    request = request_of(case, Path("unwritten"))
+    beside.unlink()
+
+    assert request.specification is not None
+    assert request.specification.resolve() == beside.resolve()
+    assert case.folder.is_absolute()
+    with pytest.raises(ExperimentError, match=r"d\.toml:\d+:1: --specification: expected a file"):
+        check_design(path, read_design(path))
