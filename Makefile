@@ -48,6 +48,7 @@ networks: setup      ## Compile the bundled road networks again (needs the extra
 	$(BIN)/traffic network build data/networks/avenue data/networks/avenue/avenue.net.xml --force
 	$(BIN)/traffic network build data/networks/quarter data/networks/quarter/quarter.net.xml --force
 	$(BIN)/traffic network build data/networks/high_street data/networks/high_street/high_street.net.xml --force
+	$(BIN)/traffic network build data/networks/long_road data/networks/long_road/long_road.net.xml --force
 
 figures: setup       ## Make the figures of the README again (an hour; a processor of its own for the last two)
 	$(BIN)/traffic experiment accuracy --out figures/accuracy
