@@ -7,7 +7,7 @@ complete list of what flows between them.
 
 from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, fields
-from functools import cache, partial
+from functools import cache, lru_cache, partial
 from pathlib import Path
 from typing import Any
 
@@ -21,7 +21,7 @@ from anchoring.reckless_drivers import RecklessDriver
 from anchoring.structures import LinkHistory, ObjectLinkageStructures
 from anchoring.world_objects import WorldObject
 from chronicles.marking import RecognitionMarks
-from chronicles.models import models_from_chronicles
+from chronicles.models import Model, models_from_chronicles
 from chronicles.parser import read_chronicles
 from chronicles.processes import ChronicleRecogniser
 from chronicles.recognised import RecognitionEvents
@@ -102,6 +102,9 @@ __all__ = [
 ]
 
 _SPECIFICATION = "monitoring.kpl"
+_MOST_TEXTS = 32
+"""So many specifications and chronicle files are kept, to be used in the next run as well."""
+
 IMAGE_SORTS = frozenset({"colour_image", "thermal_image"})
 """The sorts of images in the specification."""
 
@@ -327,8 +330,11 @@ def outputs_of_sort(specification: Specification, sort: str) -> tuple[str, ...]:
     )
 
 
+@lru_cache(maxsize=_MOST_TEXTS)
 def specification_from(text: str, name: str) -> Specification:
     """Return the specification that *text* says, checked; *name* is for messages.
+
+    It never changes, so it is read once.
 
     Raises:
         SpecificationErrors: The specification has faults.
@@ -463,10 +469,16 @@ class _Chronicles:
         path = Path(file)
         if not path.suffix:
             path = data_folder() / "chronicles" / f"{file}.chronicle"
-        models = models_from_chronicles(read_chronicles(path))
+        models = _models(path, path.read_bytes())
         self._made.files.append(path)
         self._made.chronicles.extend(model.name for model in models)
         return ChronicleRecogniser(models, max_delay=max_delay)
+
+
+@lru_cache(maxsize=_MOST_TEXTS)
+def _models(path: Path, _content: bytes) -> tuple[Model, ...]:
+    """Return the chronicles of a file; read once as long as the file stays as it is."""
+    return models_from_chronicles(read_chronicles(path))
 
 
 def _painter(road_map: RoadMap, generator: np.random.Generator) -> GroundPainter:

@@ -123,6 +123,26 @@ def test_files_that_units_read_are_known():
     assert [path.name for path in system.files] == ["turns.chronicle"]
 
 
+def test_a_file_that_has_changed_is_read_again(tmp_path):
+    """What a process keeps of the files of one run is not used for others of the same name."""
+    path = tmp_path / "mine.chronicle"
+    turns = (data_folder() / "chronicles" / "turns.chronicle").read_text(encoding="utf-8")
+    text = f"""
+        source events link_turns
+        strmgen events = link_turns
+        compunit recognitions Chronicles(events, ...)
+        strmgen turns = Chronicles(events, file = "{path}", max_delay = 500)
+        stream turns = turns
+        """
+    names = []
+    for written in (turns, turns.replace("turn_left", "turn_back"), turns):
+        path.write_text(written, encoding="utf-8")
+        names.append(system_of(text).chronicles)
+
+    assert names[0] == names[2] != names[1]
+    assert "turn_back" in names[1]
+
+
 def test_one_seed_gives_the_same_chance_again():
     """In traffic and in sensors, and each its own."""
     (traffic, sensors), (again, _) = generators_of(3), generators_of(3)
