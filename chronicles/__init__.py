@@ -2,8 +2,9 @@
 
 Read in this order:
 
-- `syntax`: what a chronicle says; `parser` and `printer`: text to chronicle and back; `recovery`,
-  `wording`, `intervals` and `arrangements`: what the parser needs
+- `syntax`: what a chronicle says; `parser` and `printer`: text to chronicle and back; `parameters`:
+  values that may be replaced; `recovery`, `wording`, `intervals` and `arrangements`: what the
+  parser needs; `spacing`: what the printer needs
 - `constraints`: simple temporal networks; `conditions`: on values; `expansion`: what is named or
   included, put in; `timing`: when instants can be
 - `declared`: what a file declares; `naming`, `circles`, `event_types`, `uses`, `bindings`: what

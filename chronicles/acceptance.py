@@ -151,7 +151,7 @@ def _shapes_of(file: ChronicleFile) -> Iterable[tuple[str, _Shape]]:
 
 
 def _used_shapes(chronicle: Chronicle, declared: Declared) -> Iterable[tuple[str, _Shape]]:
-    for statement in chronicle.statements:
+    for statement in chronicle.plain:
         used = event_type_of(statement)
         if used is not None and used.name not in declared.chronicles:
             yield used.name, _Shape(used.change is None, len(used.arguments))

@@ -33,7 +33,7 @@ def faults_of_variables(
     """Yield the variables of *chronicle* that no event of its *expansion* binds."""
     bound = {v.name for event in expansion.events for v in variables_of(event.event_type)}
     used: list[Variable | Star] = list(chronicle.parameters)
-    for statement in chronicle.statements:
+    for statement in chronicle.plain:
         if isinstance(statement, VariableDeclaration):
             used.extend(statement.variables)
     for statement in expansion.statements:

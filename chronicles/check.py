@@ -16,6 +16,7 @@ from chronicles.naming import (
     faults_of_names,
     faults_of_parameters,
 )
+from chronicles.parameters import faults_of_instants
 from chronicles.printer import text_of
 from chronicles.syntax import (
     VALUE_VARIABLE,
@@ -58,6 +59,8 @@ def faults(file: ChronicleFile) -> list[SpecificationError]:
     """Return every fault of *file*, in reading order."""
     declared = Declared.of(file)
     found = [
+        *faults_of_names("parameter", file.parameters),
+        *faults_of_instants(file),
         *faults_of_names("domain", file.domains),
         *faults_of_names("constraint", file.constraints),
         *faults_of_names("attribute or message", file.signals),
@@ -96,23 +99,23 @@ def _faults_of_chronicle(
         yield ChronicleError(message, chronicle.span)
         return
     if not expansion.events:
-        if not any(isinstance(s, Inclusion) for s in chronicle.statements):
+        if not any(isinstance(s, Inclusion) for s in chronicle.plain):
             message = f"chronicle '{chronicle.name}' has no event"
             yield ChronicleError(message, chronicle.span)
         return
     yield from faults_of_parameters(chronicle)
     yield from faults_of_variables(chronicle, expansion)
     yield from faults_of_stars(expansion)
-    yield from _faults_of_time(chronicle, expansion)
+    yield from _faults_of_time(chronicle, expansion, declared)
     yield from _faults_of_values_together(chronicle, expansion, declared)
 
 
 def _faults_of_statements(
     chronicle: Chronicle, declared: Declared
 ) -> Iterator[SpecificationError]:
-    for statement in chronicle.statements:
+    for statement in chronicle.plain:
         yield from _faults_of_statement(statement, declared)
-    reports = [s for s in chronicle.statements if isinstance(s, ReportAll | ReportNonOverlapping)]
+    reports = [s for s in chronicle.plain if isinstance(s, ReportAll | ReportNonOverlapping)]
     for report in reports[1:]:
         yield ChronicleError("expected at most one 'report' statement", report.span)
 
@@ -138,13 +141,16 @@ def _faults_of_statement(statement: Statement, declared: Declared) -> Iterator[S
             pass
 
 
-def _faults_of_time(chronicle: Chronicle, expansion: Expansion) -> Iterator[SpecificationError]:
+def _faults_of_time(
+    chronicle: Chronicle, expansion: Expansion, declared: Declared
+) -> Iterator[SpecificationError]:
     timing = timing_of(expansion)
     known = set(timing.places)
     contradictory = timing.network.contradiction()
     if contradictory:
         yield _contradiction(chronicle, contradictory)
         known = {name for name in known if _is_time_of_event(expansion, name)}
+    known |= set(declared.parameters)  # where one stands for an instant is told elsewhere
     near = [name for name in known if "." not in name and " " not in name]
     used = list(expansion.declared.items())
     for statement in expansion.statements:

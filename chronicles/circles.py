@@ -35,7 +35,7 @@ def circles(file: ChronicleFile) -> Iterator[SpecificationError]:
     used: dict[str, list[str]] = {}
     for chronicle in file.chronicles:
         names = [u.name for u in statements_used(chronicle) if isinstance(u, Inclusion)]
-        types = [event_type_of(statement) for statement in chronicle.statements]
+        types = [event_type_of(statement) for statement in chronicle.plain]
         events = {t.name for t in types if t is not None} - signals
         used.setdefault(chronicle.name, [*names, *sorted(events & chronicles)])
     for chronicle in file.chronicles:

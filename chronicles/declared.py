@@ -5,6 +5,7 @@ from dataclasses import dataclass
 
 from chronicles.conditions import holds, members_of, parts_of, references_of, variables_in
 from chronicles.syntax import (
+    Amount,
     AttributeDeclaration,
     Chronicle,
     ChronicleFile,
@@ -31,6 +32,7 @@ class Declared:
     constraints: Mapping[str, ConstraintDeclaration]
     signals: Mapping[str, AttributeDeclaration | MessageDeclaration]
     chronicles: Mapping[str, Chronicle]
+    parameters: Mapping[str, Amount]
 
     @staticmethod
     def of(file: ChronicleFile) -> "Declared":
@@ -40,6 +42,7 @@ class Declared:
             file.constraint_by_name,
             {declaration.name: declaration for declaration in file.signals},
             file.chronicle_by_name,
+            {declaration.name: declaration.value for declaration in reversed(file.parameters)},
         )
 
     def allowed(self, signal: Signal, parameter: str) -> Callable[[str], bool]:

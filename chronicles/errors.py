@@ -7,7 +7,7 @@ instance that dies) is not an error; see `chronicles.recognition`.
 from collections.abc import Sequence
 
 from dyknow.errors import SpecificationError
-from dyknow.source_text import Span
+from dyknow.source_text import Span, nearest_name
 
 __all__ = [
     "ChronicleError",
@@ -17,6 +17,7 @@ __all__ = [
     "UnboundInstantError",
     "UnboundVariableError",
     "UngroundedAttributeError",
+    "UnknownParameterError",
     "ValueOutsideDomainError",
 ]
 
@@ -71,6 +72,17 @@ class UngroundedAttributeError(ChronicleError):
         super().__init__(message + (hint if nearest else ""), span)
         self.attribute = attribute
         self.nearest = tuple(nearest)
+
+
+class UnknownParameterError(ChronicleError):
+    """A value is given to a parameter that the file does not have."""
+
+    def __init__(self, name: str, file: str, known: Sequence[str], span: Span) -> None:
+        nearest = nearest_name(name, known)
+        hint = f"; did you mean '{nearest}'?" if nearest else ""
+        there = f"it has {', '.join(known)}" if known else "it has none"
+        super().__init__(f"'{file}' has no parameter '{name}'{hint} ({there})", span)
+        self.name = name
 
 
 class ValueOutsideDomainError(ChronicleError):

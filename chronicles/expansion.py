@@ -149,7 +149,7 @@ def statements_used(
     declaration: Chronicle | ConstraintDeclaration,
 ) -> Iterator[Inclusion | NamedConstraint]:
     """Yield the statements that put something in."""
-    for statement in declaration.statements:
+    for statement in declaration.plain:
         if isinstance(statement, Inclusion | NamedConstraint):
             yield statement
 
@@ -170,7 +170,7 @@ class _Expander:
     def _put_in(self, chronicle: Chronicle, words: _Words) -> None:
         self._path.append(chronicle.name)
         first = len(self._found.statements)
-        self._add(chronicle.statements, words, is_included=bool(words.prefix))
+        self._add(chronicle.plain, words, is_included=bool(words.prefix))
         events = [s for s in self._found.statements[first:] if isinstance(s, EventAt)]
         members = tuple(dict.fromkeys(event.instant for event in events))
         for name in (START, END):
@@ -257,7 +257,7 @@ class _Expander:
             instants=dict(zip(declaration.instants, use.instants, strict=True)),
         )
         self._path.append(use.name)
-        self._add(declaration.statements, inner, is_included=is_included)
+        self._add(declaration.plain, inner, is_included=is_included)
         self._path.pop()
 
     def _include(self, use: Inclusion, words: _Words) -> None:

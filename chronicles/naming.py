@@ -11,6 +11,7 @@ from chronicles.syntax import (
     Domain,
     DomainDeclaration,
     Membership,
+    ParameterDeclaration,
     Star,
     Variable,
 )
@@ -29,7 +30,7 @@ __all__ = [
 
 
 def faults_of_names(
-    kind: str, declarations: Iterable[DomainDeclaration | Named]
+    kind: str, declarations: Iterable[ParameterDeclaration | DomainDeclaration | Named]
 ) -> Iterator[SpecificationError]:
     """Yield the declarations whose name another one of this *kind* has already."""
     first: dict[str, Span] = {}

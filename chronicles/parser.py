@@ -1,7 +1,8 @@
 """From the text of a chronicle file to its syntax tree."""
 
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
+from dataclasses import replace
 from functools import cache
 from pathlib import Path
 from typing import Any
@@ -15,14 +16,15 @@ from chronicles import syntax
 from chronicles.arrangements import ARRANGEMENTS, plain
 from chronicles.errors import ChronicleSyntaxError
 from chronicles.intervals import intersection_of, is_empty, negated, sum_of, union_of
+from chronicles.parameters import LONGEST, Given, Values, amount_from, length_from
 from chronicles.recovery import MAX_DEPTH, Outline
-from chronicles.syntax import ChronicleFile, Interval
+from chronicles.syntax import Amount, ChronicleFile, Interval
 from chronicles.wording import RESERVED_WORDS, alternatives, described, listed
 from dyknow.errors import SpecificationError, SpecificationErrors
 from dyknow.source_text import SourceText, Span, nearest_name
-from dyknow.time import MILLISECOND, Duration, duration_from_text
+from dyknow.time import MILLISECOND, Duration
 
-__all__ = ["parse_chronicles", "read_chronicles"]
+__all__ = ["parse_chronicles", "read_chronicles", "with_values"]
 
 _TERMINALS = rf"""
 NAME: /(?!(?:{"|".join(sorted(RESERVED_WORDS))})\b)[A-Za-z_]\w*/
@@ -54,14 +56,18 @@ _DEEPEST = 200
 _KEYWORD = re.compile(r'"([a-z_]+)"')
 _STARTS = frozenset({"_ATTRIBUTE", "_DOMAIN"})
 """Terminals that are accepted together only between declarations."""
-_LONGEST = 1 << 58
 
 
-def read_chronicles(path: Path) -> ChronicleFile:
+def read_chronicles(path: Path, values: Mapping[str, Given] | None = None) -> ChronicleFile:
     """Read the chronicle file at *path*, which is UTF-8.
 
+    Args:
+        path: The file.
+        values: Of its parameters, in place of those that it declares.
+
     Raises:
-        SpecificationErrors: The text is no UTF-8 or does not follow the grammar.
+        SpecificationErrors: The text is no UTF-8 or does not follow the grammar, or a value is
+            none that its parameter can have.
     """
     name = str(path)
     try:
@@ -71,17 +77,25 @@ def read_chronicles(path: Path) -> ChronicleFile:
         message = f"expected text in UTF-8, found the byte 0x{error.object[error.start]:02x}"
         fault = ChronicleSyntaxError(f"{message} at offset {error.start}", place)
         raise SpecificationErrors("1 fault(s)", [fault]) from error
-    return parse_chronicles(text, name)
+    return parse_chronicles(text, name, values)
 
 
-def parse_chronicles(text: str, name: str = "<chronicles>") -> ChronicleFile:
-    """Parse the text of a chronicle file, called *name* in messages.
+def parse_chronicles(
+    text: str, name: str = "<chronicles>", values: Mapping[str, Given] | None = None
+) -> ChronicleFile:
+    """Parse the text of a chronicle file.
+
+    Args:
+        text: The text.
+        name: How messages refer to it.
+        values: Of its parameters, in place of those that it declares.
 
     Raises:
-        SpecificationErrors: The text does not follow the grammar, in one or several places; the
-            faults are of the class `ChronicleSyntaxError`.
+        SpecificationErrors: The text does not follow the grammar, in one or several places, or
+            names a parameter that is not there, or a value is none that its parameter can have.
     """
     source = SourceText(name, text)
+    given = _amounts(values or {})
     outline = Outline(text)
     if outline.too_deep is not None:
         place = Span(source, outline.too_deep, outline.too_deep + 1)
@@ -93,13 +107,69 @@ def parse_chronicles(text: str, name: str = "<chronicles>") -> ChronicleFile:
         message = f"expected at most {_DEEPEST} operators inside one another, found more"
         fault = ChronicleSyntaxError(message, _span_of_token(source, deepest))
         raise SpecificationErrors("1 fault(s)", [fault])
-    pieces = _Pieces(source)
-    found: ChronicleFile | None = None
-    if tree is not None:
-        found = _transformer(source, pieces).transform(tree)
-        faults = sorted([*faults, *pieces.faults], key=lambda fault: fault.span.start)
-    if faults or found is None:
+    if tree is None:
         raise SpecificationErrors(f"{len(faults)} fault(s)", faults)
+    put_in = Values(source, _declared(source, tree), given)
+    pieces = _Pieces(source, put_in)
+    found: ChronicleFile = _transformer(source, pieces).transform(tree)
+    of_names = [] if faults else put_in.faults  # what cannot be read may have declared them
+    faults = sorted([*faults, *pieces.faults, *of_names], key=lambda fault: fault.span.start)
+    if faults:
+        raise SpecificationErrors(f"{len(faults)} fault(s)", faults)
+    return _redeclared(found, given)
+
+
+def with_values(file: ChronicleFile, values: Mapping[str, Given]) -> ChronicleFile:
+    """Return a file, which was read from a text, with other values of some parameters.
+
+    Raises:
+        SpecificationErrors: A value is none that its parameter can have.
+    """
+    source = file.span.source
+    kept = {parameter.name: parameter.value for parameter in file.parameters}
+    return parse_chronicles(source.text, source.name, {**kept, **values})
+
+
+def _redeclared(file: ChronicleFile, values: Mapping[str, Amount]) -> ChronicleFile:
+    """Return a file that declares the values that its parameters have been given."""
+    if not values:
+        return file
+    declarations = tuple(
+        replace(each, value=values.get(each.name, each.value))
+        if isinstance(each, syntax.ParameterDeclaration)
+        else each
+        for each in file.declarations
+    )
+    return replace(file, declarations=declarations)
+
+
+def _amounts(values: Mapping[str, Given]) -> dict[str, Amount]:
+    """Return the values that are given to parameters.
+
+    Raises:
+        SpecificationErrors: One is neither a length of time nor a number.
+    """
+    found, faults = {}, []
+    for name, value in values.items():
+        text = SourceText(f"<value of '{name}'>", str(value))
+        try:
+            found[name] = amount_from(value, Span(text, 0, len(text.text)))
+        except SpecificationError as error:
+            faults.append(error)
+    if faults:
+        raise SpecificationErrors(f"{len(faults)} fault(s)", faults)
+    return found
+
+
+def _declared(source: SourceText, tree: Tree[Token]) -> dict[str, Amount]:
+    """Return the values that a file declares for its parameters; of two of one name, the first."""
+    found: dict[str, Amount] = {}
+    read = _Pieces(source, Values(source, {}, {}))
+    for declaration in tree.children:
+        if isinstance(declaration, Tree) and declaration.data == "parameter_declaration":
+            name, amount = declaration.children
+            assert isinstance(amount, Tree)
+            found.setdefault(str(name), read.amount([*amount.children]))  # type: ignore[list-item]
     return found
 
 
@@ -165,9 +235,10 @@ class _Pieces(Transformer[Token, Any]):
         faults: Of numbers and intervals.
     """
 
-    def __init__(self, source: SourceText) -> None:
+    def __init__(self, source: SourceText, values: Values) -> None:
         super().__init__()
         self._source = source
+        self._values = values
         self.faults: list[SpecificationError] = []
 
     def dotted_name(self, names: list[Token]) -> str:
@@ -180,7 +251,12 @@ class _Pieces(Transformer[Token, Any]):
     def parameters(self, items: list[Any]) -> tuple[Any, ...]:
         return tuple(item for item in items if item is not None)
 
-    conditions = arguments = statements = constraints = bindings = terms = parameters
+    conditions = arguments = bindings = terms = parameters
+
+    def statements(self, items: list[Any]) -> tuple[Any, ...]:
+        return tuple(self._values.stated(item) for item in items)
+
+    constraints = statements
 
     def instants(self, names: list[Token | None]) -> tuple[str, ...]:
         return tuple(str(name) for name in names if name is not None)
@@ -188,11 +264,27 @@ class _Pieces(Transformer[Token, Any]):
     def points(self, items: list[Any]) -> tuple[Any, ...]:
         return tuple(item for item in items if item is not None)
 
+    def amount(self, tokens: list[Token | None]) -> Amount:
+        sign, number = tokens
+        assert number is not None
+        span = _span_of_token(self._source, number)
+        try:
+            return amount_from(f"{sign or ''}{number}", span)
+        except SpecificationError as error:
+            self.faults.append(error)
+            return syntax.Number(span, 1)
+
     def count(self, tokens: list[Token]) -> int:
-        return int(tokens[0])
+        (token,) = tokens
+        if token.type == "NAME":
+            return self._values.count(token, token.start_pos or 0)
+        return int(token)
 
     def limit(self, tokens: list[Token]) -> int | None:
-        return int(tokens[0]) if tokens else None
+        return self.count(tokens) if tokens else None
+
+    def named(self, tokens: list[Token]) -> Duration:
+        return self._duration(tokens[0])
 
     def signed(self, tokens: list[Token | None]) -> Duration:
         sign, number = tokens
@@ -203,7 +295,7 @@ class _Pieces(Transformer[Token, Any]):
     def offset(self, tokens: list[Token]) -> Duration:
         terms = [self.signed([*pair]) for pair in zip(tokens[::2], tokens[1::2], strict=True)]
         total = Duration(sum(terms))
-        if len(terms) > 1 and abs(total) > _LONGEST:
+        if len(terms) > 1 and abs(total) > LONGEST:
             self._complain("the sum of these lengths is longer than nine years", tokens[0])
         return total
 
@@ -268,18 +360,13 @@ class _Pieces(Transformer[Token, Any]):
         self.faults.append(ChronicleSyntaxError(message, _span_of_token(self._source, token)))
 
     def _duration(self, token: Token) -> Duration:
+        if token.type == "NAME":
+            return self._values.length(token, token.start_pos or 0)
         try:
-            duration = duration_from_text(token)
-        except ValueError:
-            duration = None
-        if duration is None or duration % MILLISECOND:
-            self._complain(
-                f"'{token}' is finer than a millisecond, the instant of chronicles", token
-            )
+            return length_from(token, _span_of_token(self._source, token))
+        except SpecificationError as error:
+            self.faults.append(error)
             return MILLISECOND
-        if duration > _LONGEST:
-            self._complain(f"'{token}' is longer than nine years", token)
-        return duration
 
 
 def _transformer(source: SourceText, pieces: _Pieces) -> Transformer[Token, Any]:

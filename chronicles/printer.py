@@ -3,11 +3,11 @@
 Comments and the layout of the original are not part of the tree. Equal trees print equally.
 """
 
-import re
 from collections.abc import Iterable, Iterator
 from functools import singledispatch
 from itertools import pairwise
 
+from chronicles.spacing import constant
 from chronicles.syntax import (
     Anything,
     AttributeDeclaration,
@@ -44,7 +44,10 @@ from chronicles.syntax import (
     NamedConstraint,
     Negation,
     NoEvent,
+    Number,
     Occurs,
+    ParameterDeclaration,
+    Parametric,
     Relation,
     ReportAll,
     ReportNonOverlapping,
@@ -55,12 +58,9 @@ from chronicles.syntax import (
     VariableDeclaration,
     Within,
 )
-from chronicles.wording import RESERVED_WORDS
 from dyknow.time import text_from_duration
 
 __all__ = ["print_chronicles", "text_of", "text_of_moment"]
-
-_BARE = re.compile(r"[A-Za-z_]\w*|\d+", re.ASCII)
 
 
 def print_chronicles(file: ChronicleFile) -> str:
@@ -94,7 +94,7 @@ def _(_node: Anything) -> str:
 
 @text_of.register
 def _(node: Value) -> str:
-    return _constant(node.text)
+    return constant(node.text)
 
 
 @text_of.register
@@ -129,6 +129,16 @@ def _(node: Length) -> str:
 
 
 @text_of.register
+def _(node: Number) -> str:
+    return str(node.value)
+
+
+@text_of.register
+def _(node: Parametric) -> str:
+    return node.text
+
+
+@text_of.register
 def _(node: Interval) -> str:
     lower = "]-oo" if node.lower is None else f"[{text_from_duration(node.lower)}"
     upper = "oo[" if node.upper is None else f"{text_from_duration(node.upper)}]"
@@ -150,7 +160,7 @@ def _(node: Within) -> str:
 
 @text_of.register
 def _(node: ValueSet) -> str:
-    return "{" + ", ".join(map(_constant, node.values)) + "}"
+    return "{" + ", ".join(map(constant, node.values)) + "}"
 
 
 @text_of.register
@@ -295,6 +305,12 @@ def _(node: ConstraintDeclaration) -> str:
 
 
 @text_of.register
+def _(node: ParameterDeclaration) -> str:
+    unit = " ms" if isinstance(node.value, Length) else ""
+    return f"parameter {node.name} = {text_of(node.value)}{unit}"
+
+
+@text_of.register
 def _(node: DomainDeclaration) -> str:
     return f"domain {node.name} = {text_of(node.domain)}"
 
@@ -360,9 +376,3 @@ def _offset(offset: int) -> str:
     if not offset:
         return ""
     return f" {'+' if offset > 0 else '-'} {text_from_duration(abs(offset))}"
-
-
-def _constant(text: str) -> str:
-    if _BARE.fullmatch(text) and text not in RESERVED_WORDS:
-        return text
-    return f'"{text}"'

@@ -16,7 +16,8 @@ MAX_DEPTH = 50
 _PIECES = re.compile(
     r'"[^"\n]*"'
     r"|(?:\#|//)[^\n]*"
-    r"|(?P<declaration>\b(?:attribute|constraint|domain|message)\b|^chronicle\b)"
+    r"|(?P<declaration>\b(?:attribute|constraint|domain|message)\b|^chronicle\b"
+    r"|^[ \t]*parameter(?=\s+\w+\s*=))"
     r"|(?P<statement>\b(?:chronicle|event|instant|noevent|occurs|report|variable)\b)"
     r"|(?P<line>^(?![ \t]*\}))"
     r"|(?P<mark>[{}()\[\];])",

@@ -17,6 +17,7 @@ from dyknow.time import Duration
 
 __all__ = [
     "VALUE_VARIABLE",
+    "Amount",
     "Anything",
     "AttributeDeclaration",
     "Change",
@@ -52,9 +53,12 @@ __all__ = [
     "NamedConstraint",
     "Negation",
     "NoEvent",
+    "Number",
     "Occurs",
     "Operand",
     "Parameter",
+    "ParameterDeclaration",
+    "Parametric",
     "Relation",
     "ReportAll",
     "ReportNonOverlapping",
@@ -150,6 +154,16 @@ class Length(_Node):
     """A constant length of time."""
 
     duration: Duration
+
+
+@dataclass(frozen=True)
+class Number(_Node):
+    """A number without a unit: of events, or of milliseconds where a length of time stands."""
+
+    value: int
+
+
+Amount = Length | Number
 
 
 @dataclass(frozen=True)
@@ -436,6 +450,21 @@ Statement = (
 
 
 @dataclass(frozen=True)
+class Parametric(_Node):
+    """A statement in which parameters of the file stand: `t2 <= t1 + longest`.
+
+    Attributes:
+        text: How it is written.
+        parameters: The names of the parameters.
+        statement: What it says with their values.
+    """
+
+    text: str
+    parameters: tuple[str, ...]
+    statement: Statement
+
+
+@dataclass(frozen=True)
 class Chronicle(_Node):
     """A model of a complex event.
 
@@ -448,8 +477,13 @@ class Chronicle(_Node):
 
     name: str
     parameters: tuple[Variable, ...]
-    statements: tuple[Statement, ...]
+    statements: tuple[Statement | Parametric, ...]
     instants: tuple[str, ...] = ()
+
+    @cached_property
+    def plain(self) -> tuple[Statement, ...]:
+        """The statements, with values in the places of parameters."""
+        return _plain(self.statements)
 
 
 @dataclass(frozen=True)
@@ -466,7 +500,25 @@ class ConstraintDeclaration(_Node):
     name: str
     parameters: tuple[Variable, ...]
     instants: tuple[str, ...]
-    statements: tuple[Statement, ...]
+    statements: tuple[Statement | Parametric, ...]
+
+    @cached_property
+    def plain(self) -> tuple[Statement, ...]:
+        """The statements, with values in the places of parameters."""
+        return _plain(self.statements)
+
+
+@dataclass(frozen=True)
+class ParameterDeclaration(_Node):
+    """`parameter longest = 1 min`: a value that whoever uses the file may replace.
+
+    Attributes:
+        name: Its name.
+        value: What stands in the place of the name.
+    """
+
+    name: str
+    value: Amount
 
 
 @dataclass(frozen=True)
@@ -500,13 +552,19 @@ class ChronicleFile(_Node):
     """Everything that one file declares, in the order of the text."""
 
     declarations: tuple[
-        DomainDeclaration
+        ParameterDeclaration
+        | DomainDeclaration
         | ConstraintDeclaration
         | AttributeDeclaration
         | MessageDeclaration
         | Chronicle,
         ...,
     ]
+
+    @cached_property
+    def parameters(self) -> tuple[ParameterDeclaration, ...]:
+        """The declared parameters."""
+        return tuple(d for d in self.declarations if isinstance(d, ParameterDeclaration))
 
     @cached_property
     def domains(self) -> tuple[DomainDeclaration, ...]:
@@ -538,6 +596,10 @@ class ChronicleFile(_Node):
     def constraint_by_name(self) -> Mapping[str, ConstraintDeclaration]:
         """The first constraint of each name."""
         return {constraint.name: constraint for constraint in reversed(self.constraints)}
+
+
+def _plain(statements: tuple[Statement | Parametric, ...]) -> tuple[Statement, ...]:
+    return tuple(s.statement if isinstance(s, Parametric) else s for s in statements)
 
 
 def variables_of(event_type: EventType) -> Iterator[Variable]:

@@ -1,6 +1,7 @@
 """Declarations of a chronicle file that nothing in it uses."""
 
 from collections.abc import Iterator
+from itertools import chain
 
 from chronicles.conditions import parts_of, references_of
 from chronicles.event_types import event_type_of
@@ -10,6 +11,7 @@ from chronicles.syntax import (
     Domain,
     Membership,
     NamedConstraint,
+    Parametric,
     Statement,
     VariableDeclaration,
 )
@@ -25,6 +27,7 @@ def warnings(file: ChronicleFile) -> list[SpecificationError]:
     """
     used = set(_names_used(file))
     unused = [
+        *(each for each in file.parameters if ("parameter", each.name) not in used),
         *(domain for domain in file.domains if ("domain", domain.name) not in used),
         *(each for each in file.constraints if ("constraint", each.name) not in used),
         *(signal for signal in file.signals if ("signal", signal.name) not in used),
@@ -35,6 +38,7 @@ def warnings(file: ChronicleFile) -> list[SpecificationError]:
 
 def _names_used(file: ChronicleFile) -> Iterator[tuple[str, str]]:
     """Yield what is named in *file*, and what kind of thing it is."""
+    yield from (("parameter", name) for name in _parameters_used(file))
     for domain in _domains_used(file):
         for reference in references_of(domain):
             yield "domain", reference.name
@@ -44,6 +48,14 @@ def _names_used(file: ChronicleFile) -> Iterator[tuple[str, str]]:
             yield "signal", event_type.name
         if isinstance(statement, NamedConstraint):
             yield "constraint", statement.name
+
+
+def _parameters_used(file: ChronicleFile) -> Iterator[str]:
+    stated = [each.statements for each in file.chronicles]
+    stated += [each.statements for each in file.constraints]
+    for statement in chain.from_iterable(stated):
+        if isinstance(statement, Parametric):
+            yield from statement.parameters
 
 
 def _domains_used(file: ChronicleFile) -> Iterator[Domain]:
@@ -60,6 +72,6 @@ def _domains_used(file: ChronicleFile) -> Iterator[Domain]:
 
 def _statements(file: ChronicleFile) -> Iterator[Statement]:
     for chronicle in file.chronicles:
-        yield from chronicle.statements
+        yield from chronicle.plain
     for constraint in file.constraints:
-        yield from constraint.statements
+        yield from constraint.plain

@@ -50,7 +50,7 @@ def _faults_of_bindings(use: Inclusion, included: Chronicle) -> Iterator[Specifi
         yield ChronicleError(message, use.span)
     if n_by_place > len(included.instants):
         yield ArityError(use.name, len(included.instants), n_by_place, use.span)
-    inside = {name for statement in included.statements for name in instants_of(statement)}
+    inside = {name for statement in included.plain for name in instants_of(statement)}
     known = [*dict.fromkeys([*included.instants, *sorted(inside), START, END])]
     names = [*included.instants[:n_by_place], *(label for label in labels if label)]
     for name in dict.fromkeys(names):
@@ -66,10 +66,10 @@ def faults_of_constraint(
     yield from faults_of_parameters(constraint)
     yield from duplicates_among("instant", constraint.instants, constraint.span)
     variables = [parameter.name for parameter in constraint.parameters]
-    for statement in constraint.statements:
+    for statement in constraint.plain:
         for name in dict.fromkeys(instants_of(statement)):
-            if name not in constraint.instants:
-                nearest = nearest_name(name, constraint.instants)
+            if name not in constraint.instants and name not in declared.parameters:
+                nearest = nearest_name(name, [*constraint.instants, *declared.parameters])
                 yield UnknownNameError("instant", name, statement.span, nearest)
         match statement:
             case NamedConstraint():
