@@ -2,9 +2,9 @@
 
 Read in this order:
 
-- `syntax`: what a chronicle says; `parser` and `printer`: text to chronicle and back; `parameters`:
-  values that may be replaced; `recovery`, `wording`, `intervals` and `arrangements`: what the
-  parser needs; `spacing`: what the printer needs
+- `syntax`: what a chronicle says; `parser` and `printer`: text to chronicle and back;
+  `parameters`: values that may be replaced; `recovery`, `wording`, `intervals` and
+  `arrangements`: what the parser needs; `spacing`: what the printer needs
 - `constraints`: simple temporal networks; `conditions`: on values; `expansion`: what is named or
   included, put in; `timing`: when instants can be
 - `declared`: what a file declares; `naming`, `circles`, `event_types`, `uses`, `bindings`: what
@@ -19,7 +19,7 @@ Read in this order:
   `reporting`: which matches are reported; `prospects`: partial instances as people see them
 - `recognition`: the recogniser; `ordering`: samples in the order of their valid times;
   `processes`: the recogniser on streams; `recognised`: what it recognises as events for others;
-  `marking`: the objects that it was about
+  `marking`: the objects that it was about; `specified`: files that a specification names
 - `attributes`: which streams the attributes of chronicles stand for; `observing`: changes of
   their values as events; `registering`: what is declared for a chronicle; `reasoning`: chronicles
   over the streams of a network

@@ -6,7 +6,8 @@ A change is written NAME=VALUE. What NAME says:
   `scenario.flows.0.rate_per_hour`; tables of an array are numbered, or called by their `name`
   or `kind`;
 * `LABEL.SETTING`: a setting of the process that makes the stream of that label, such as
-  `car_relations.gap` or `cars.remove_after`;
+  `car_relations.gap` or `cars.remove_after`; of one that recognises chronicles also a parameter of
+  their file, such as `overtakes.longest`;
 * `LABEL/N`: the policy under which the process of that label takes its Nth stream, such as
   `world_objects/1 = "sample every 200, use most recent"`;
 * any other: a parameter of the specification, such as `stability`.
@@ -32,7 +33,7 @@ from dyknow.kpl.syntax import (
     UnitInstance,
     Value,
 )
-from dyknow.source_text import nearest_name
+from dyknow.source_text import SourceText, Span, nearest_name
 from traffic.errors import RequestError
 
 __all__ = [
@@ -108,7 +109,9 @@ def _with_setting(
         found = f"'{label}', which is made by no unit and no link"
         raise RequestError(_OPTION, "the label of a process that has settings", found)
     others = tuple(each for each in process.settings if each.name != setting)
-    changed = replace(process, settings=(*others, Setting(setting, _value(value))))
+    text = SourceText(_OPTION, f"{label}.{setting} = {value}")
+    given = Setting(setting, _value(value), span=Span(text, 0, len(text.text)))
+    changed = replace(process, settings=(*others, given))
     return _replaced(specification, generator, replace(generator, process=changed))
 
 

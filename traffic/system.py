@@ -22,9 +22,9 @@ from anchoring.structures import LinkHistory, ObjectLinkageStructures
 from anchoring.world_objects import WorldObject
 from chronicles.marking import RecognitionMarks
 from chronicles.models import Model, models_from_chronicles
-from chronicles.parser import read_chronicles
 from chronicles.processes import ChronicleRecogniser
 from chronicles.recognised import RecognitionEvents
+from chronicles.specified import read_with_settings
 from dyknow.kpl.check import check
 from dyknow.kpl.names import descendants
 from dyknow.kpl.parser import parse_specification
@@ -35,6 +35,7 @@ from dyknow.kpl.syntax import (
     GeneratorDeclaration,
     Label,
     Link,
+    Setting,
     SourceDeclaration,
     SourceInstance,
     Specification,
@@ -85,10 +86,12 @@ from traffic.features.unfiltered import UnfilteredCars
 from traffic.world import World
 
 __all__ = [
+    "CHRONICLES_SETTINGS",
     "IMAGE_SORTS",
     "Made",
     "MonitoringSystem",
     "bundled_specification",
+    "chronicle_file",
     "image_labels",
     "implementations_of",
     "labels_of_sort",
@@ -107,6 +110,10 @@ _MOST_TEXTS = 32
 
 IMAGE_SORTS = frozenset({"colour_image", "thermal_image"})
 """The sorts of images in the specification."""
+
+
+CHRONICLES_SETTINGS = frozenset({"file", "max_delay"})
+"""The settings of the unit `Chronicles`; others are for the parameters of its file."""
 
 
 class MonitoringSystem:
@@ -245,6 +252,12 @@ class _Constant:
 def bundled_specification() -> Path:
     """Return the path of the specification of the whole application."""
     return data_folder() / "specifications" / _SPECIFICATION
+
+
+def chronicle_file(name: str) -> Path:
+    """Return the path of a chronicle file: a bundled one by its name, or any by its path."""
+    path = Path(name)
+    return path if path.suffix else data_folder() / "chronicles" / f"{name}.chronicle"
 
 
 def read_specification(path: Path | None = None, option: str = "--specification") -> Specification:
@@ -464,21 +477,21 @@ class _Chronicles:
     def __init__(self, made: Made) -> None:
         self._made = made
 
-    def recogniser(self, *, file: str, max_delay: Duration) -> ChronicleRecogniser:
-        """Recognise the chronicles of a file: a bundled one by name, or any by its path."""
-        path = Path(file)
-        if not path.suffix:
-            path = data_folder() / "chronicles" / f"{file}.chronicle"
-        models = _models(path, path.read_bytes())
+    def recogniser(
+        self, *, file: str, max_delay: Duration, **parameters: Setting
+    ) -> ChronicleRecogniser:
+        """Recognise the chronicles of a file, with values for its parameters."""
+        path = chronicle_file(file)
+        models = _models(path, path.read_bytes(), tuple(parameters.values()))
         self._made.files.append(path)
         self._made.chronicles.extend(model.name for model in models)
         return ChronicleRecogniser(models, max_delay=max_delay)
 
 
 @lru_cache(maxsize=_MOST_TEXTS)
-def _models(path: Path, _content: bytes) -> tuple[Model, ...]:
+def _models(path: Path, _content: bytes, parameters: tuple[Setting, ...]) -> tuple[Model, ...]:
     """Return the chronicles of a file; read once as long as the file stays as it is."""
-    return models_from_chronicles(read_chronicles(path))
+    return models_from_chronicles(read_with_settings(path, parameters, CHRONICLES_SETTINGS))
 
 
 def _painter(road_map: RoadMap, generator: np.random.Generator) -> GroundPainter:

@@ -4,7 +4,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from typing import Any, Protocol, TypeVar
 
-from dyknow.errors import SpecificationError, UnknownNameError
+from dyknow.errors import SpecificationError, SpecificationErrors, UnknownNameError
 from dyknow.kpl.settings import arguments_from, plain_value
 from dyknow.kpl.syntax import (
     Link,
@@ -53,7 +53,7 @@ class Implementations:
         units: Computational unit symbol to a function that takes the settings as keyword
             arguments and makes the unit. Settings are checked against its signature. A setting
             annotated `Duration` may be written as a bare number of milliseconds. A ValueError
-            is reported with the place of the symbol.
+            is reported with the place of the symbol, SpecificationErrors as they are.
         link: Makes link processes, if the specification has any.
     """
 
@@ -124,7 +124,9 @@ class Maker:
             return make()
         except ValueError as fault:
             self.faults.append(SpecificationError(str(fault), span))
-            return None
+        except SpecificationErrors as errors:
+            self.faults += (e for e in errors.exceptions if isinstance(e, SpecificationError))
+        return None
 
 
 def _field(selected: SelectedField) -> Field:

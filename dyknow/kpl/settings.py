@@ -2,7 +2,8 @@
 
 What a setting may be is read from the factory's signature: a parameter annotated `Duration`,
 `float`, `int`, `str` or `bool` (or one of these or None) is checked; any other takes what comes.
-A bare number is milliseconds where a `Duration` is wanted.
+A bare number is milliseconds where a `Duration` is wanted. Settings that the factory does not name
+go into its `**others`; if these are annotated `Setting`, it gets them as they are written.
 """
 
 import inspect
@@ -50,7 +51,14 @@ def plain_value(value: Value) -> Any:
 def arguments_from(settings: Iterable[Setting], factory: Callable[..., Any]) -> dict[str, Any]:
     """Return the keyword arguments that *settings*, which have no faults, are for *factory*."""
     wanted = _parameters(factory)
-    return {each.name: _argument(each.value, wanted.get(each.name)) for each in settings}
+    known = {name: each for name, each in wanted.items() if _is_setting(each)}
+    as_written = any(_takes_as_written(each) for each in wanted.values())
+    return {
+        each.name: each
+        if as_written and each.name not in known
+        else _argument(each.value, known.get(each.name))
+        for each in settings
+    }
 
 
 def repeated_settings(settings: Sequence[Setting]) -> Iterator[SpecificationError]:
@@ -91,6 +99,10 @@ def _parameters(factory: Callable[..., Any]) -> dict[str, inspect.Parameter]:
 
 def _is_setting(parameter: inspect.Parameter) -> bool:
     return parameter.kind in (parameter.POSITIONAL_OR_KEYWORD, parameter.KEYWORD_ONLY)
+
+
+def _takes_as_written(parameter: inspect.Parameter) -> bool:
+    return parameter.kind is parameter.VAR_KEYWORD and parameter.annotation is Setting
 
 
 def _annotations(parameter: inspect.Parameter | None) -> tuple[Any, ...]:
