@@ -9,6 +9,7 @@ __all__ = [
     "LineError",
     "NetworkBuildError",
     "RecordingError",
+    "RegressionError",
     "ReplayError",
     "RequestError",
     "ResultError",
@@ -107,6 +108,18 @@ class ExperimentError(TrafficError):
     Attributes:
         faults: Everything that is wrong, a text for each; it begins with the place if there is
             one.
+    """
+
+    def __init__(self, *faults: str) -> None:
+        super().__init__("\n".join(faults))
+        self.faults: tuple[str, ...] = faults
+
+
+class RegressionError(TrafficError):
+    """What a regression suite says of its recordings is wrong.
+
+    Attributes:
+        faults: Everything that is wrong, a text for each, which begins with the place.
     """
 
     def __init__(self, *faults: str) -> None:

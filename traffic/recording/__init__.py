@@ -2,5 +2,6 @@
 
 Read in this order: `codecs` (what flows, as fields), `periods` (what stood back under load),
 `describing` (what else is said of a run), `writing` (while it goes on), `views` (what viewers
-show), `rebuilding` (the system again, from the file), `changes` (what is not as it was).
+show), `finding` (where the recording of a run is), `rebuilding` (the system again, from the file),
+`changes` (what is not as it was).
 """

@@ -4,7 +4,7 @@ What came from outside comes from the recording. Random numbers are drawn from t
 same order, so that every process does again what it did.
 """
 
-from collections.abc import Callable, Collection, Iterator, Sequence
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from dataclasses import replace
 from functools import partial
 from itertools import chain, takewhile
@@ -94,6 +94,7 @@ def system_of(
     specification: Specification | None = None,
     world: World | None = None,
     outputs: Sequence[str] | None = None,
+    parameters: Mapping[str, object] | None = None,
 ) -> MonitoringSystem:
     """Return the system of a recorded run, fed with what was recorded.
 
@@ -109,6 +110,7 @@ def system_of(
             recording.
         outputs: The output streams that are wanted; by default those that were, or all but
             images of a changed specification.
+        parameters: Values in place of recorded ones.
 
     Raises:
         ReplayError: It is not a recording of 'traffic run', or its network has changed.
@@ -119,9 +121,10 @@ def system_of(
         outputs = description.outputs if specification is None else outputs_of(specification)
     specification = specification or description.specification
     declared = Declarations(specification).parameters
+    values = {**description.parameters, **(parameters or {})}
     return MonitoringSystem(
         world or world_of(recording),
-        {name: value for name, value in description.parameters.items() if name in declared},
+        {name: value for name, value in values.items() if name in declared},
         tuple(outputs),
         specification=specification,
         sources=_recorded_sources(recording, specification),

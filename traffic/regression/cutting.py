@@ -4,7 +4,7 @@ Only what came from outside is kept, and the truth for scoring: everything else 
 by whoever replays it.
 """
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
@@ -12,8 +12,9 @@ from typing import Any
 from dyknow.recordings.recorder import Recorder
 from dyknow.recordings.recording import Recording
 from dyknow.streams.sample import Heartbeat, Sample
+from dyknow.streams.table import Table
 from dyknow.time import Duration, TimePoint, text_from_duration
-from traffic.errors import RequestError
+from traffic.errors import ReplayError, RequestError
 from traffic.recording.codecs import CODECS
 from traffic.recording.describing import COMPLETE, RunDescription
 from traffic.recording.rebuilding import (
@@ -24,7 +25,9 @@ from traffic.recording.rebuilding import (
 )
 from traffic.sumo.replayed import TRUTH, FrameKeeper
 
-__all__ = ["Piece", "cut"]
+__all__ = ["Piece", "cut", "refuse_unfinished"]
+
+_SINCE = "since"
 
 
 @dataclass(frozen=True, slots=True)
@@ -45,24 +48,38 @@ class Piece:
             if isinstance(sample, Heartbeat) or not self._has(sample.valid_time):
                 continue
             valid, available = sample.valid_time, sample.available_time
-            yield Sample(
-                sample.value, TimePoint(valid - self.begin), TimePoint(available - self.begin)
-            )
+            value = self._in_own_time(sample.value)
+            yield Sample(value, TimePoint(valid - self.begin), TimePoint(available - self.begin))
+
+    def _in_own_time(self, value: Any) -> Any:
+        """Return a value of a source; the only times in one are those since which signals show."""
+        if isinstance(value, Table) and _SINCE in value:
+            return value.with_columns(**{_SINCE: value[_SINCE] - self.begin})
+        return value
 
     def _has(self, time: TimePoint) -> bool:
         return self.begin <= time <= self.end
 
 
-def cut(path: Path, piece: Piece, out: Path) -> None:
+def cut(path: Path, piece: Piece, out: Path, outputs: Sequence[str] | None = None) -> None:
     """Write a piece of the recording at *path* to *out*.
+
+    Args:
+        path: The recording of a run.
+        piece: The piece.
+        out: What is written.
+        outputs: Output streams that a replay of the piece has; those of the run by default.
 
     Raises:
         RecordingError: It is no recording, or damaged, or *out* exists.
         RequestError: The piece is not in it.
-        ReplayError: It is not a recording of 'traffic run'.
+        ReplayError: It is not a recording of 'traffic run', or does not go to its end.
     """
     with open_run(path) as recording:
         said = describe(recording)
+        refuse_unfinished(recording, said)
+        if outputs is not None:
+            said = replace(said, outputs=tuple(outputs))
         length = said.origin.scenario.duration
         if not 0 <= piece.begin < piece.end <= length:
             whole = text_from_duration(length)
@@ -76,6 +93,18 @@ def cut(path: Path, piece: Piece, out: Path) -> None:
                     write(sample)
             _cut_truth(recording, piece, recorder)
             recorder.annotate(COMPLETE)
+
+
+def refuse_unfinished(recording: Recording, said: RunDescription) -> None:
+    """Raise a `ReplayError` if a recording does not have all of its run.
+
+    What is missing would look like something that was not recognised.
+    """
+    if said.is_complete:
+        return
+    why = "it ends before its run does" if recording.damage is None else str(recording.damage)
+    why = why.removeprefix(f"{recording.path}: ")
+    raise ReplayError(recording.path, f"not all of its run is there: {why}")
 
 
 def _described(said: RunDescription, piece: Piece) -> RunDescription:

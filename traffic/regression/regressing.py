@@ -2,22 +2,26 @@
 
 import difflib
 import time
-from collections.abc import Iterable, Iterator
-from dataclasses import dataclass
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass, field
 from pathlib import Path
 
-from traffic.errors import RequestError
+from dyknow.kpl.syntax import Specification
+from dyknow.recordings.errors import RecordingError
+from networks.errors import NetworkError
+from traffic.errors import TrafficError
 from traffic.recording.rebuilding import describe, open_run, simulation_of, system_of, world_of
-from traffic.regression.cutting import Piece, cut
+from traffic.regression.cutting import refuse_unfinished
 from traffic.regression.expectations import text_from_result
-from traffic.regression.suite import Entry
+from traffic.regression.suite import Entry, replace_text
 from traffic.results import RunResult
 from traffic.running import scorer_for
+from traffic.settings import Changes, changed_specification, parameters_in
 from traffic.sumo.replayed import FramePacer
 from traffic.system import outputs_of, read_specification
 from traffic.watching import Watch, told_of
 
-__all__ = ["Addition", "Regression", "add", "regress", "replayed", "update"]
+__all__ = ["Regression", "System", "regress", "replayed", "update"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -28,55 +32,80 @@ class Regression:
         entry: Of the suite.
         difference: What is otherwise, as lines of a unified diff; empty if nothing is.
         seconds: How long the replay took.
+        fault: Why it could not be replayed, or compared; empty if it could.
     """
 
     entry: Entry
     difference: tuple[str, ...]
     seconds: float
+    fault: str = ""
 
 
 @dataclass(frozen=True, slots=True)
-class Addition:
-    """What is to be added to a suite.
+class System:
+    """What recordings are replayed with: the bundled specification, perhaps changed.
 
     Attributes:
-        recording: The recording of a run.
-        piece: The piece of it.
-        entry: What it becomes.
+        specification: Which processes and streams there are.
+        parameters: Values of parameters that replace recorded ones.
     """
 
-    recording: Path
-    piece: Piece
-    entry: Entry
+    specification: Specification = field(default_factory=read_specification)
+    parameters: Mapping[str, object] = field(default_factory=dict)
+
+    @classmethod
+    def changed(cls, changes: Changes) -> "System":
+        """Return the bundled system with new values of settings (`traffic.settings`).
+
+        Raises:
+            RequestError: A setting is not there, or cannot have the new value.
+        """
+        bundled = read_specification()
+        parameters = parameters_in(changes, bundled)
+        return cls(changed_specification(bundled, changes), parameters)
 
 
-def regress(entries: Iterable[Entry]) -> Iterator[Regression]:
-    """Replay each recording with the bundled specification and chronicles, as they are now.
+def regress(
+    entries: Iterable[Entry], system: System | None = None, hints: Mapping[str, str] | None = None
+) -> Iterator[Regression]:
+    """Replay each recording with the specification and the chronicles as they are now.
 
-    Raises:
-        RequestError: What is expected of a recording is not written down.
-        RecordingError: A recording cannot be read.
-        TrafficError: A recording cannot be replayed.
+    One that cannot be read is told of, and the others go on.
+
+    Args:
+        entries: Of a suite.
+        system: What they are replayed with; by default what comes with the program.
+        hints: What to do about a recording that cannot be read, by name.
     """
+    system = system or System()
     for entry in entries:
         began = time.perf_counter()
-        expected = _expected(entry).splitlines()
-        found = text_from_result(replayed(entry.recording)).splitlines()
-        names = (str(entry.expected), "now")
-        difference = tuple(difflib.unified_diff(expected, found, *names, n=1, lineterm=""))
-        yield Regression(entry, difference, time.perf_counter() - began)
+        difference: tuple[str, ...] = ()
+        fault = ""
+        try:
+            difference = _difference(entry, system)
+        except (RecordingError, TrafficError, NetworkError, OSError) as error:
+            hint = (hints or {}).get(entry.name, "")
+            fault = f"{error}; {hint}" if hint else str(error)
+        yield Regression(entry, difference, time.perf_counter() - began, fault)
 
 
-def replayed(path: Path) -> RunResult:
-    """Replay a recording with the bundled specification and chronicles, as they are now."""
+def replayed(path: Path, system: System | None = None) -> RunResult:
+    """Replay a recording with the specification and the chronicles as they are now.
+
+    Raises:
+        RecordingError: It cannot be read.
+        ReplayError: It was made of another network, or does not have all of its run.
+    """
+    system = system or System()
     with open_run(path) as recording:
         said, world = describe(recording), world_of(recording)
-        specification = read_specification()
-        outputs = [name for name in outputs_of(specification) if name in said.outputs]
-        system = system_of(recording, specification, world, outputs)
+        refuse_unfinished(recording, said)
+        outputs = [name for name in outputs_of(system.specification) if name in said.outputs]
+        monitoring = system_of(recording, system.specification, world, outputs, system.parameters)
         truth = simulation_of(recording)
-        scorer = None if truth is None else scorer_for(world, truth, system)
-        watch = Watch(system, scorer, is_governed=False)
+        scorer = None if truth is None else scorer_for(world, truth, monitoring)
+        watch = Watch(monitoring, scorer, is_governed=False)
         pacer = None
         if truth is not None and scorer is not None:
             pacer = FramePacer(truth, [scorer.observe_frame])
@@ -85,33 +114,19 @@ def replayed(path: Path) -> RunResult:
 
 def update(entries: Iterable[Entry]) -> Iterator[Entry]:
     """Write down what is recognised now as what is expected; yield those that have changed."""
+    system = System()
     for entry in entries:
-        text = text_from_result(replayed(entry.recording))
+        text = text_from_result(replayed(entry.recording, system))
         if not entry.expected.exists() or entry.expected.read_text("utf-8") != text:
-            entry.expected.write_text(text, encoding="utf-8")
+            replace_text(entry.expected, text)
             yield entry
 
 
-def add(addition: Addition) -> Entry:
-    """Add a piece of a recording to a suite, with what is recognised in it now.
-
-    Raises:
-        RequestError: There is a recording of this name, or the piece is not in the recording.
-        RecordingError: The recording cannot be read.
-    """
-    entry = addition.entry
-    if entry.recording.exists():
-        raise RequestError("--name", f"a name that '{entry.folder}' does not have", entry.name)
-    cut(addition.recording, addition.piece, entry.recording)
-    return next(update([entry]), entry)
-
-
-def _expected(entry: Entry) -> str:
-    try:
-        return entry.expected.read_text(encoding="utf-8")
-    except OSError as error:
-        expected = f"what is to be recognised in '{entry.expected}' ({error.strerror})"
-        raise RequestError("traffic regress", expected, "nothing") from error
+def _difference(entry: Entry, system: System) -> tuple[str, ...]:
+    expected = entry.read_expected().splitlines()
+    found = text_from_result(replayed(entry.recording, system)).splitlines()
+    names = (str(entry.expected), "now")
+    return tuple(difflib.unified_diff(expected, found, *names, n=1, lineterm=""))
 
 
 def _ignore(_done: float, _total: float) -> None:
