@@ -1,6 +1,6 @@
 """One run: a scenario, simulated, watched, recognised, scored, and written to a folder."""
 
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
@@ -20,6 +20,7 @@ from traffic.explaining.keeping import explanations_kept
 from traffic.origin import origin_of, write_origin
 from traffic.overlaying import Overlay
 from traffic.recording.describing import RunDescription
+from traffic.recording.finding import note_recording
 from traffic.recording.writing import RunRecorder, recorded
 from traffic.request import DEFAULT_PERIOD, FRAME_PERIOD, RunRequest, View
 from traffic.results import RunResult, new_folder, run_folder, write_result
@@ -39,7 +40,14 @@ from traffic.system import (
 from traffic.watching import IMAGES, OnProgress, Watch, told_of
 from traffic.world import World, camera_of, generators_of, road_map_at
 
-__all__ = ["CheckedRequest", "check_request", "run_scenario", "scorer_for", "write_network"]
+__all__ = [
+    "CheckedRequest",
+    "check_request",
+    "outputs_recognising",
+    "run_scenario",
+    "scorer_for",
+    "write_network",
+]
 
 _RECOGNITIONS = "recognitions"
 _RECOGNISED = "recognised_"
@@ -74,7 +82,7 @@ def run_scenario(request: RunRequest, on_progress: OnProgress) -> tuple[RunResul
         watch = Watch(system, scorer)
         with (
             _film(request, camera, watch),
-            _recording(request, description, system, world, simulation) as keep,
+            _recording(request, description, system, world, simulation, folder) as keep,
             explanations_kept(system, road_map, folder),
         ):
             if keep is not None:
@@ -175,27 +183,38 @@ def _system(request: RunRequest, specification: Specification, world: World) -> 
     return MonitoringSystem(world, parameters, outputs, specification=specification)
 
 
-def _outputs(request: RunRequest, specification: Specification) -> tuple[str, ...]:
+def outputs_recognising(
+    specification: Specification, names: Collection[str] | None, place: str
+) -> tuple[str, ...]:
     """Return the names of the output streams that are wanted, without those of images.
+
+    Args:
+        specification: Which output streams there are.
+        names: What is to be recognised; None for everything.
+        place: Where these names were written.
 
     Raises:
         RequestError: Something is to be recognised that the specification does not tell.
     """
-    names = outputs_of(specification)
+    outputs = outputs_of(specification)
     told = outputs_behind(specification, labels_of_sort(specification, _RECOGNITIONS))
     by_name = {name.removeprefix(_RECOGNISED): name for name in told}
-    if request.recognise is None:
-        return names
-    for name in request.recognise:
+    if names is None:
+        return outputs
+    for name in names:
         if name not in by_name:
             nearest = nearest_name(name, by_name)
             hint = f"; did you mean '{nearest}'?" if nearest else ""
             expected = f"'all', or some of {', '.join(by_name)} with commas between them{hint}"
-            is_asked = request.recognise != request.scenario.recognise
-            place = "--recognise" if is_asked else "'recognise' in the scenario"
             raise RequestError(place, expected, name)
-    unwanted = set(told) - {by_name[name] for name in request.recognise}
-    return tuple(name for name in names if name not in unwanted)
+    unwanted = set(told) - {by_name[name] for name in names}
+    return tuple(name for name in outputs if name not in unwanted)
+
+
+def _outputs(request: RunRequest, specification: Specification) -> tuple[str, ...]:
+    is_asked = request.recognise != request.scenario.recognise
+    place = "--recognise" if is_asked else "'recognise' in the scenario"
+    return outputs_recognising(specification, request.recognise, place)
 
 
 def _description(request: RunRequest, system: MonitoringSystem) -> RunDescription:
@@ -218,11 +237,13 @@ def _recording(
     system: MonitoringSystem,
     world: World,
     simulation: Simulation,
+    folder: Path,
 ) -> Iterator[RunRecorder | None]:
     """Record what the system does while the block lasts, if that was asked for."""
     if request.recording is None:
         yield None
         return
+    note_recording(request.recording.path, folder)
     parts = system, world.road_map, simulation
     with recorded(request.recording, description, *parts) as keep:
         yield keep
