@@ -31,8 +31,8 @@ class WorldObject:
         acceleration_density: How much objects accelerate: spectral density, m²/s³.
         velocity_deviation: How far the first velocity of a percept may be wrong, m/s.
         averaging: Share of a new percept in the averages.
-        restart_after: After a gap as long as this the filter starts anew, because an object that
-            is found again may in truth be another one with another velocity.
+        restart_after: An object that was not there for a while and is found again after a gap as
+            long as this starts anew, because it may in truth be another one with another velocity.
     """
 
     sort = "world_object"
@@ -85,7 +85,7 @@ class WorldObject:
         mean, covariance = update_in_plane(
             mean, covariance, lower["position"], lower["covariance"]
         )
-        anew = elapsed * SECOND >= self._restart_after
+        anew = ~upper["observed"] & (elapsed * SECOND >= self._restart_after)
         first_mean, first_covariance = self._begin(lower)
         mean = choose(anew, first_mean, mean)
         covariance = choose(anew, first_covariance, covariance)

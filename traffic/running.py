@@ -162,7 +162,8 @@ class _NoVehicles:
 def scorer_for(world: World, simulation: Simulation, system: MonitoringSystem) -> Scorer:
     """Return what scores a run of *system* in *world*, by the truth that *simulation* knows."""
     footprint = world.camera.footprint() if world.camera is not None else None
-    return Scorer(world.road_map, simulation, footprint, system.chronicles)
+    error = float(str(system.parameters.get("position_noise", 0)))
+    return Scorer(world.road_map, simulation, footprint, system.chronicles, position_error=error)
 
 
 def write_network(network: Network, folder: Path) -> None:

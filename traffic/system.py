@@ -129,6 +129,7 @@ class MonitoringSystem:
 
     Attributes:
         specification: Which processes and streams there are.
+        parameters: The values that were given for its parameters.
         implementations: What its symbols stand for.
         network: The network.
         structures: Which symbol was linked to which objects, down to the percepts.
@@ -147,6 +148,7 @@ class MonitoringSystem:
     ) -> None:
         made = Made()
         self.specification = specification or read_specification()
+        self.parameters = dict(parameters)
         self.implementations = implementations_of(world, sources, made)
         self.network: Network = build_network(
             self.specification, self.implementations, parameters, outputs

@@ -88,10 +88,20 @@ def test_after_a_gap_the_filter_starts_anew():
     world = _after([(k * 1.0, 0.0) for k in range(30)])
     elsewhere = percepts([1], [(60.0, 40.0)], milliseconds(4900))
 
-    found = UNIT.update(world, elsewhere, milliseconds(4900))
+    unseen = UNIT.predict(world, milliseconds(4800))
+    found = UNIT.update(unseen, elsewhere, milliseconds(4900))
 
     np.testing.assert_allclose(found["position"], [[60.0, 40.0]])
     np.testing.assert_allclose(found["velocity"], elsewhere["velocity"])
+
+
+def test_seldom_is_no_gap():
+    """Who is measured every second is believed to be between where it is and was expected."""
+    straight = [(k * 10.0, 0.0) for k in range(10)]
+
+    aside = _after([*straight, (100.0, 4.0)], period_ms=1000)
+
+    assert 0 < aside["position"][0, 1] < 4
 
 
 def test_unknown_attributes_wait_for_known_ones():

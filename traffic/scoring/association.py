@@ -28,7 +28,7 @@ class Association:
         gate: A car further than this from a vehicle does not stand for it, metres.
     """
 
-    def __init__(self, gate: float = 4.0) -> None:
+    def __init__(self, gate: float) -> None:
         self._gate = gate
         self._latest: dict[int, int] = {}
         self._times: list[npt.NDArray[np.int64]] = []

@@ -26,6 +26,9 @@ __all__ = ["Scorer", "Verdict", "lines_scored", "unjudged"]
 _LATEST_FRAMES = 250
 """How many frames are remembered: cars are known later than they were seen, by seconds at most."""
 
+_GATE = 4.0
+"""Metres within which a car may stand for a vehicle when positions are exact."""
+
 Points = npt.NDArray[np.float64]
 
 
@@ -60,6 +63,7 @@ class Scorer:
         simulation: Names vehicles and lanes.
         footprint: The ground in view, shape (k, 2), metres; None if everything is.
         chronicles: Names of the chronicles that the run may recognise.
+        position_error: The largest error of measured positions along an axis, metres.
     """
 
     def __init__(
@@ -68,13 +72,15 @@ class Scorer:
         simulation: Simulation,
         footprint: Points | None,
         chronicles: Collection[str],
+        *,
+        position_error: float = 0.0,
     ) -> None:
         claimed = kinds_claimed(chronicles)
         self._kinds = {kind: each for kind, each in WATCHERS.items() if kind in claimed}
         self._names = simulation.names
         self._footprint = footprint
         self._truth = GroundTruth(road_map, simulation.lanes, self._kinds)
-        self._association = Association()
+        self._association = Association(gate=_GATE + position_error)
         self._frames: deque[Frame] = deque(maxlen=_LATEST_FRAMES)
 
     def observe_frame(self, frame: Frame) -> None:
