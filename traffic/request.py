@@ -15,6 +15,7 @@ from traffic.settings import SCENARIO
 __all__ = [
     "DEFAULT_PERIOD",
     "FRAME_PERIOD",
+    "OPTIONS",
     "RecordingRequest",
     "RunRequest",
     "View",
@@ -28,7 +29,7 @@ FRAME_PERIOD = Duration(40 * MILLISECOND)
 """Of the cameras."""
 
 _EVERYTHING = "all"
-_OPTIONS = frozenset(
+OPTIONS = frozenset(
     (
         "duration",
         "look_at",
@@ -143,8 +144,8 @@ class RunRequest:
             RequestError: A setting is impossible, or has no meaning beside another one.
             ScenarioError: There is no such scenario, or it has faults.
         """
-        options = {k: _option(k, v) for k, v in settings.items() if k in _OPTIONS}
-        changes = {k: v for k, v in settings.items() if k not in _OPTIONS}
+        options = {k: _option(k, v) for k, v in settings.items() if k in OPTIONS}
+        changes = {k: v for k, v in settings.items() if k not in OPTIONS}
         texts: Any = options
         return cls.from_texts(scenario=scenario, seed=seed, out=out, changes=changes, **texts)
 

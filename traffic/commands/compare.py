@@ -10,7 +10,9 @@ __all__ = ["compare"]
 
 
 def compare(
-    one: Annotated[Path, typer.Argument(help="Folder of an experiment or of a run.")],
+    one: Annotated[
+        Path, typer.Argument(help="Folder of an experiment or of a run, or a table (.csv).")
+    ],
     other: Annotated[Path, typer.Argument(help="Another one, with the same measures.")],
     *,
     json: Annotated[
@@ -19,9 +21,10 @@ def compare(
 ) -> None:
     """Show what differs between two experiments or runs, and whether that may be chance."""
     from traffic.commands.showing_comparisons import json_from_comparison, show_comparison
-    from traffic.experiments import comparing
+    from traffic.experiments.comparing import compare as compared
+    from traffic.experiments.findings import named_apart, read_findings
 
-    found = comparing.compare(comparing.read_side(one), comparing.read_side(other))
+    found = compared(*named_apart([read_findings(one), read_findings(other)]))
     if json:
         sys.stdout.write(json_from_comparison(found) + "\n")
     else:

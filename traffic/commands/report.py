@@ -11,15 +11,19 @@ __all__ = ["report"]
 
 def report(
     folders: Annotated[
-        list[Path], typer.Argument(metavar="RUN|EXPERIMENT...", help="Folders that were written.")
+        list[Path],
+        typer.Argument(
+            metavar="RUN|EXPERIMENT...",
+            help="Folders that were written; tables of cells (.csv) stand for experiments.",
+        ),
     ],
     *,
     html: Annotated[
         Path | None,
         typer.Option(
             help="Write a web page of one file, which opens offline: of a run with map, time "
-            "line and the reasons behind all of it, of several runs with their scores, of an "
-            "experiment with its measures."
+            "line and the reasons behind all of it, of several runs with their scores, of "
+            "experiments with their measures."
         ),
     ] = None,
     film: Annotated[
@@ -36,9 +40,9 @@ def report(
         bool, typer.Option("--json", help="Print one JSON document instead of tables.")
     ] = False,
 ) -> None:
-    """Show what runs recognised, against the truth, or what an experiment measured.
+    """Show what runs recognised, against the truth, or what experiments measured.
 
-    Nothing is run again.
+    Several experiments are put side by side. Nothing is run again.
     """
     from traffic.commands.showing import progress
     from traffic.commands.showing_reports import show_report

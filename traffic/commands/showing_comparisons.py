@@ -6,10 +6,14 @@ from rich.console import Console
 from rich.markup import escape
 from rich.table import Table
 
-from traffic.experiments.comparing import CellKey, Comparison, Difference
+from traffic.experiments.comparing import Comparison, Difference
+from traffic.experiments.designs import Cell
+from traffic.experiments.levels import headings_of
 from traffic.experiments.measures import Share
 
 __all__ = ["json_from_comparison", "show_comparison"]
+
+_MOST_CELLS = 10
 
 
 def show_comparison(comparison: Comparison) -> None:
@@ -18,11 +22,8 @@ def show_comparison(comparison: Comparison) -> None:
         "in brackets, where the difference lies with a confidence of 95 % (Newcombe); "
         "of twenty comparisons of equals, one looks clear by chance"
     )
-    factors = (
-        [name for name, _ in comparison.differences[0].cell] if comparison.differences else []
-    )
     table = Table(
-        *map(escape, factors),
+        *map(escape, headings_of([*comparison.differences[0].cell])),
         "measure",
         escape(comparison.one),
         escape(comparison.other),
@@ -32,12 +33,16 @@ def show_comparison(comparison: Comparison) -> None:
     )
     for each in comparison.differences:
         sides = (_share(each.one), _share(each.other))
-        levels = [escape(str(level)) for _, level in each.cell]
+        levels = [escape(str(level)) for level in each.cell.values()]
         table.add_row(*levels, escape(each.measure), *sides, _difference(each))
     console = Console()
     console.print(table)
-    for name, cell in comparison.only:
+    for remark in comparison.remarks:
+        console.print(escape(remark), highlight=False)
+    for name, cell in comparison.only[:_MOST_CELLS]:
         console.print(f"only {escape(name)} has {_cell(cell)}", highlight=False)
+    if len(comparison.only) > _MOST_CELLS:
+        console.print(f"and {len(comparison.only) - _MOST_CELLS} more", highlight=False)
 
 
 def json_from_comparison(comparison: Comparison) -> str:
@@ -55,11 +60,12 @@ def json_from_comparison(comparison: Comparison) -> str:
     ]
     only = [{"side": name, "cell": dict(cell)} for name, cell in comparison.only]
     sides = {"one": comparison.one, "other": comparison.other}
-    return to_json({**sides, "differences": differences, "only": only}, indent=1).decode()
+    document = {**sides, "differences": differences, "only": only, "remarks": comparison.remarks}
+    return to_json(document, indent=1).decode()
 
 
-def _cell(cell: CellKey) -> str:
-    return escape(", ".join(f"{name} {level}" for name, level in cell)) or "all"
+def _cell(cell: Cell) -> str:
+    return escape(", ".join(f"{name} {level}" for name, level in cell.items())) or "all"
 
 
 def _share(share: Share) -> str:

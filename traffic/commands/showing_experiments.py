@@ -1,7 +1,7 @@
 """Tables and the progress bar of experiments."""
 
 import sys
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 
 from rich.box import SIMPLE_HEAD
@@ -16,13 +16,20 @@ from traffic.experiments.estimating import Estimate
 from traffic.experiments.measures import Share
 from traffic.experiments.reading import bundled_designs, read_design
 from traffic.experiments.running import Experiment
+from traffic.experiments.tables import CellMeasures
 
 __all__ = [
+    "INTERVALS",
     "experiment_progress",
+    "share_text",
+    "show_cells",
     "show_designs",
     "show_estimate",
     "show_experiment",
 ]
+
+INTERVALS = "in brackets, where the truth lies with a confidence of 95 % (Wilson)"
+"""What stands below a table of shares."""
 
 _MOST_ERRORS = 10
 _ENOUGH = 100
@@ -68,25 +75,30 @@ def show_estimate(estimate: Estimate) -> None:
 def show_experiment(experiment: Experiment) -> None:
     """Print the measures of all cells, with the intervals that they lie in."""
     design = experiment.design
-    measures = [escape(measure) for measure in design.measures]
-    caption = "in brackets, where the truth lies with a confidence of 95 % (Wilson)"
-    table = Table(
-        *map(escape, design.varying), "runs", "failed", *measures, box=SIMPLE_HEAD, caption=caption
-    )
-    for cell in experiment.cells:
-        levels = [escape(str(cell.cell[name])) for name in design.varying]
-        shares = [_share(cell.shares[measure]) for measure in design.measures]
-        table.add_row(*levels, str(cell.runs), str(cell.failed or ""), *shares)
     console = Console()
     console.print(f"[bold]{escape(design.name)}[/]: {escape(design.description)}", highlight=False)
-    console.print(table)
+    show_cells(design.varying, design.measures, experiment.cells)
     for error in experiment.errors[:_MOST_ERRORS]:
         console.print(f"[red]failed[/]: {escape(error)}", highlight=False)
     if len(experiment.errors) > _MOST_ERRORS:
         console.print(f"and {len(experiment.errors) - _MOST_ERRORS} more", highlight=False)
 
 
-def _share(share: Share) -> str:
+def show_cells(
+    varying: Sequence[str], measures: Sequence[str], cells: Sequence[CellMeasures]
+) -> None:
+    """Print a row for each cell."""
+    names = [*varying, "runs", "failed", *measures]
+    table = Table(*map(escape, names), box=SIMPLE_HEAD, caption=INTERVALS)
+    for cell in cells:
+        levels = [escape(str(cell.cell[name])) for name in varying]
+        shares = [share_text(cell.shares[measure]) for measure in measures]
+        table.add_row(*levels, str(cell.runs), str(cell.failed or ""), *shares)
+    Console().print(table)
+
+
+def share_text(share: Share) -> str:
+    """Return a share with its interval, as it is printed."""
     if share.value is None:
         return "[dim]–[/]"
     low, high = share.interval

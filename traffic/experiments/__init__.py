@@ -7,5 +7,8 @@ runs: processes of this machine or a cluster), `conducting` (an experiment from 
 where it was cut off, to its end), `estimating` (how long it will take), `measures` (what is
 asked of the runs of a cell), `intervals` (how sure a share is), `tables` (all runs, and the
 measures of all cells), `request` (what a user asks), `running` (an experiment as a user asks for
-it), `documents` (for other programs), `comparing` (two experiments, or two runs).
+it). Then what is done with results: `levels` (equal ones, numbers by size), `cell_files` (tables
+that others made), `findings` (what an experiment, a run or a table tells), `beside` (several
+side by side), `comparing` (two of them), `documents` (for other programs), `repeating` (which
+runs to look at, and how to do one again).
 """

@@ -82,7 +82,7 @@ def finish(design: Design, folder: ExperimentFolder, outcomes: Mapping[str, Outc
         ExperimentError: They cannot be written.
     """
     runs = parquet_from_runs(run_table(design, outcomes))
-    cells = cell_table(design, measure_cells(design, outcomes)).to_csv(index=False)
+    cells = cell_table(design.measures, measure_cells(design, outcomes)).to_csv(index=False)
     _write(folder.runs, runs)
     _write(folder.cells, cells.encode())
 

@@ -18,7 +18,16 @@ from pydantic import BeforeValidator
 from dyknow.source_text import nearest_name
 from traffic.experiments.intervals import Interval, wilson
 
-__all__ = ["MEASURES", "Counts", "Measure", "Share", "kind_of", "share"]
+__all__ = [
+    "MEANINGS",
+    "MEASURES",
+    "Counts",
+    "Measure",
+    "Share",
+    "is_less_better",
+    "kind_of",
+    "share",
+]
 
 _FORM = re.compile(r"([a-z][a-z0-9_]*)\.([a-z_]+)")
 
@@ -77,6 +86,20 @@ MEASURES: Mapping[str, Callable[[Iterable[Counts]], Iterable[tuple[int, int]]]] 
     "false_alarms": _false_alarms,
 }
 """Gives the successes and trials of each run, by what is asked."""
+
+
+MEANINGS: Mapping[str, str] = {
+    "recall": "true manoeuvres in view that were recognised",
+    "precision": "recognitions that the truth confirms",
+    "detection": "runs, of those with anything true in view, in which all of it was recognised",
+    "false_alarms": "runs with a recognition that is false",
+}
+"""Says of what a measure is the share, by what is asked."""
+
+
+def is_less_better(measure: str) -> bool:
+    """Return whether a measure counts what should not be."""
+    return measure.endswith(".false_alarms")
 
 
 def _checked(value: object) -> object:

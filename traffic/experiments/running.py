@@ -1,10 +1,12 @@
 """An experiment as a user asks for it: checked, begun or resumed, conducted, measured."""
 
+from collections.abc import Mapping
 from contextlib import AbstractContextManager
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 
 from traffic.errors import ExperimentError, RequestError
+from traffic.experiments.cases import Outcome
 from traffic.experiments.conducting import OnProgress, conduct
 from traffic.experiments.designs import Design
 from traffic.experiments.engine import Engine, cluster_at, local_workers
@@ -27,6 +29,7 @@ class Experiment:
         cells: The measures of its cells.
         errors: Why runs failed: a text for each failed run, with its settings.
         versions: Of the program and of what results may depend on.
+        outcomes: What became of each run, by key.
     """
 
     path: Path
@@ -34,6 +37,7 @@ class Experiment:
     cells: list[CellMeasures]
     errors: list[str]
     versions: dict[str, str]
+    outcomes: Mapping[str, Outcome] = field(default_factory=dict, repr=False)
 
 
 def run_experiment(request: ExperimentRequest, on_progress: OnProgress) -> Experiment:
@@ -94,7 +98,7 @@ def read_experiment(path: Path, design: Design | None = None) -> Experiment:
         for outcome in outcomes.values()
         if outcome.error is not None
     ]
-    return Experiment(path, design, cells, errors, basis.versions)
+    return Experiment(path, design, cells, errors, basis.versions, outcomes)
 
 
 def _engine(request: ExperimentRequest) -> AbstractContextManager[Engine]:

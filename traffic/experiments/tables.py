@@ -67,14 +67,14 @@ def measure_cells(design: Design, outcomes: Mapping[str, Outcome]) -> list[CellM
     return [_measured(design, cells[number], found) for number, found in by_cell.items()]
 
 
-def cell_table(design: Design, cells: Sequence[CellMeasures]) -> pd.DataFrame:
+def cell_table(measures: Sequence[str], cells: Sequence[CellMeasures]) -> pd.DataFrame:
     """Return a row for each cell.
 
     Columns: the settings that vary, `runs`, `failed`, and for each measure its value; with
     `.low` and `.high` behind its name, between which the truth lies with a confidence of 95 %;
     with `.successes` and `.trials`, of what it is the share.
     """
-    return pd.DataFrame([_cell_row(cell, design.measures) for cell in cells])
+    return pd.DataFrame([_cell_row(cell, measures) for cell in cells])
 
 
 def _measured(design: Design, cell: Cell, outcomes: Iterable[Outcome]) -> CellMeasures:

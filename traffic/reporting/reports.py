@@ -1,4 +1,4 @@
-"""What a user asks to be told about: runs, or an experiment; as document, as table, as page."""
+"""What a user asks to be told about: runs, or experiments; as document, as table, as page."""
 
 import csv
 import io
@@ -9,11 +9,16 @@ from pathlib import Path
 from pydantic_core import to_json
 
 from traffic.errors import RequestError, ResultError
-from traffic.experiments.documents import json_from_experiment
-from traffic.experiments.folders import ExperimentFolder
-from traffic.experiments.running import Experiment, read_experiment
+from traffic.experiments.beside import Beside, put_beside
+from traffic.experiments.documents import beside_table, json_from_beside, json_from_findings
+from traffic.experiments.findings import (
+    Findings,
+    holds_experiment,
+    named_apart,
+    read_experiment_or_table,
+)
 from traffic.experiments.tables import cell_table
-from traffic.reporting.experiments import page_of_experiment
+from traffic.reporting.experiments import page_of_experiments
 from traffic.reporting.films import film_beside
 from traffic.reporting.pages import write_page
 from traffic.reporting.runs import page_of_run, page_of_runs
@@ -21,7 +26,7 @@ from traffic.results import RunResult, Score, read_result
 from traffic.totals import total_score
 from traffic.watching import OnProgress
 
-__all__ = ["ExperimentReport", "Report", "RunsReport", "read_report"]
+__all__ = ["ExperimentsReport", "Report", "RunsReport", "read_report"]
 
 _COUNTS = ("truth", "recognised", "correct", "precision", "recall", "left_out")
 
@@ -85,18 +90,25 @@ class RunsReport:
 
 
 @dataclass(frozen=True, slots=True)
-class ExperimentReport:
-    """A finished experiment.
+class ExperimentsReport:
+    """One finished experiment, or several side by side.
 
     Attributes:
-        experiment: The experiment.
+        sides: The experiments, or tables that stand for them.
     """
 
-    experiment: Experiment
+    sides: tuple[Findings, ...]
+
+    @property
+    def beside(self) -> Beside:
+        """The experiments side by side."""
+        return put_beside(self.sides)
 
     def as_json(self) -> str:
-        """Return the measures of all cells."""
-        return json_from_experiment(self.experiment)
+        """Return the measures of all cells, of several experiments side by side."""
+        if len(self.sides) == 1:
+            return json_from_findings(self.sides[0])
+        return json_from_beside(self.beside)
 
     def write_csv(self, path: Path) -> None:
         """Write a row for each cell.
@@ -104,7 +116,10 @@ class ExperimentReport:
         Raises:
             ResultError: The file cannot be written.
         """
-        table = cell_table(self.experiment.design, self.experiment.cells)
+        if len(self.sides) == 1:
+            table = cell_table(self.sides[0].measures, self.sides[0].cells)
+        else:
+            table = beside_table(self.beside)
         write_page(table.to_csv(index=False), path)
 
     def write_page(self, path: Path, film: Path | None, on_progress: OnProgress) -> None:
@@ -117,23 +132,32 @@ class ExperimentReport:
         if film is not None:
             raise RequestError("--film", "a run, not an experiment, with it", film)
         on_progress(1, 1)
-        write_page(page_of_experiment(self.experiment), path)
+        write_page(page_of_experiments(self.sides), path)
 
 
-Report = RunsReport | ExperimentReport
+Report = RunsReport | ExperimentsReport
 
 
-def read_report(folders: Sequence[Path]) -> Report:
-    """Read finished runs, or a finished experiment.
+def read_report(paths: Sequence[Path]) -> Report:
+    """Read finished runs, or finished experiments and tables that stand for such.
 
     Raises:
-        ResultError: A folder holds neither, or both kinds are asked for, or several experiments.
-        ExperimentError: The experiment is not finished, or its files are damaged.
+        ResultError: A folder holds neither, or both kinds are asked for, or experiments that do
+            not measure the same, or one of them twice.
+        ExperimentError: An experiment is not finished, or files are damaged or have faults.
     """
-    experiments = [folder for folder in folders if ExperimentFolder(folder).is_there]
+    experiments = [path for path in paths if holds_experiment(path)]
     if not experiments:
-        return RunsReport({folder: read_result(folder) for folder in folders})
-    if len(folders) > 1:
-        fault = f"'{experiments[0]}' is an experiment, which is told about by itself"
-        raise ResultError(f"{fault}; 'traffic compare' puts two beside each other")
-    return ExperimentReport(read_experiment(experiments[0]))
+        return RunsReport({path: read_result(path) for path in paths})
+    others = [path for path in paths if path not in experiments]
+    if others:
+        told = f"'{experiments[0]}' is an experiment, '{others[0]}' is none"
+        raise ResultError(f"expected either runs or experiments: {told}")
+    twice = next((path for path in paths if paths.count(path) > 1), None)
+    if twice is not None:
+        raise ResultError(f"expected each experiment once, found '{twice}' again")
+    sides = named_apart([read_experiment_or_table(path) for path in paths])
+    if not put_beside(sides).measures:
+        found = "; ".join(f"{', '.join(side.measures)} ({side.name})" for side in sides)
+        raise ResultError(f"expected experiments that share a measure, found {found}")
+    return ExperimentsReport(tuple(sides))
