@@ -1,27 +1,34 @@
 """What people write about chronicles in comments, for those who look them up.
 
-The comment that ends on the line before a declaration is about that declaration. The comment at
-the top of a file is about the whole file.
+The comment that ends on the line before a declaration is about that declaration, and so is one
+behind a parameter. The comment at the top of a file is about the whole file.
 """
 
 import re
 from collections.abc import Iterable, Iterator
 from itertools import takewhile
 
-from chronicles.syntax import Chronicle, ChronicleFile
+from chronicles.syntax import Chronicle, ChronicleFile, ParameterDeclaration
 
-__all__ = ["comment_of", "heading_of"]
+__all__ = ["comment_of", "heading_of", "remark_on"]
 
 _COMMENT = re.compile(r"\s*(?:#+|//+) ?(?P<words>.*)")
 
 
-def comment_of(chronicle: Chronicle) -> str:
-    """Return the comment right before *chronicle*, without its marks; empty if there is none."""
-    span = chronicle.span
+def comment_of(declaration: Chronicle | ParameterDeclaration) -> str:
+    """Return the comment right before a declaration, without its marks; empty if there is none."""
+    span = declaration.span
     *lines, indent = span.source.text[: span.start].split("\n")
     if indent.strip():
         return ""
     return "\n".join(reversed([*_words(reversed(lines))])).strip()
+
+
+def remark_on(parameter: ParameterDeclaration) -> str:
+    """Return the comment behind *parameter*, or else the one right before it."""
+    span = parameter.span
+    rest, _, _ = span.source.text[span.end :].partition("\n")
+    return next(_words([rest]), "") or comment_of(parameter)
 
 
 def heading_of(file: ChronicleFile) -> str:

@@ -9,7 +9,7 @@ from bisect import bisect_left
 from collections.abc import Iterable, Iterator, Mapping
 
 from chronicles.errors import ChronicleError, UnknownParameterError
-from chronicles.expansion import instants_of
+from chronicles.expansion import instants_of, statements_used
 from chronicles.spacing import respaced
 from chronicles.syntax import (
     Amount,
@@ -18,11 +18,13 @@ from chronicles.syntax import (
     Comparison,
     ConstraintDeclaration,
     Difference,
+    Inclusion,
     Instant,
     InstantDeclaration,
     Length,
     Number,
     Operand,
+    ParameterDeclaration,
     Parametric,
     Statement,
     Within,
@@ -39,6 +41,7 @@ __all__ = [
     "faults_of_instants",
     "faults_of_values",
     "length_from",
+    "parameters_behind",
 ]
 
 LONGEST = 1 << 58
@@ -191,6 +194,27 @@ class Values:
 
     def _span(self, name: str, start: int) -> Span:
         return Span(self._source, start, start + len(name))
+
+
+def parameters_behind(chronicle: Chronicle, file: ChronicleFile) -> list[ParameterDeclaration]:
+    """Return the parameters on which depends what *chronicle* means, also through others."""
+    found: set[str] = set()
+    seen: set[int] = set()
+    ahead: list[Chronicle | ConstraintDeclaration] = [chronicle]
+    while ahead:
+        declaration = ahead.pop()
+        if id(declaration) in seen:
+            continue
+        seen.add(id(declaration))
+        for statement in declaration.statements:
+            if isinstance(statement, Parametric):
+                found.update(statement.parameters)
+        for use in statements_used(declaration):
+            known = (
+                file.chronicle_by_name if isinstance(use, Inclusion) else file.constraint_by_name
+            )
+            ahead += [known[use.name]] if use.name in known else []
+    return [parameter for parameter in file.parameters if parameter.name in found]
 
 
 def faults_of_values(

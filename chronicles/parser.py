@@ -268,6 +268,8 @@ class _Pieces(Transformer[Token, Any]):
         sign, number = tokens
         assert number is not None
         span = _span_of_token(self._source, number)
+        if sign is not None:
+            span = Span(self._source, _span_of_token(self._source, sign).start, span.end)
         try:
             return amount_from(f"{sign or ''}{number}", span)
         except SpecificationError as error:

@@ -18,7 +18,8 @@ from chronicles.attributes import (
 )
 from chronicles.models import Model, models_from_chronicles
 from chronicles.observing import AttributeChanges
-from chronicles.parser import parse_chronicles
+from chronicles.parameters import Given
+from chronicles.parser import parse_chronicles, with_values
 from chronicles.processes import ChronicleRecogniser
 from chronicles.registering import (
     FIND_CHANGES,
@@ -99,6 +100,7 @@ class ChronicleReasoner:
         interpretation: AttributeInterpretation | None = None,
         *,
         settings: RecognitionSettings | None = None,
+        values: Mapping[str, Given] | None = None,
     ) -> tuple[str, ...]:
         """Recognise chronicles in what their streams say from now on; return their names.
 
@@ -110,14 +112,16 @@ class ChronicleReasoner:
             chronicles: The chronicles; they may speak of each other, and of registered ones.
             interpretation: What attributes stand for, beside what they stand for in all.
             settings: How these are recognised, if not as all others.
+            values: Of the parameters of a text or file, in place of those that it declares.
 
         Raises:
             ChronicleAlreadyRegisteredError: A chronicle of this name is recognised.
             ChronicleSyntaxError: A text does not follow the grammar.
             SpecificationErrors: There is no stream for some attributes, or another fault.
-            ValueError: The name of a chronicle cannot stand in a label.
+            ValueError: The name of a chronicle cannot stand in a label, or values are given to
+                chronicles that have been prepared already.
         """
-        models, messages = _models(chronicles)
+        models, messages = _models(chronicles, values or {})
         self._check_names([model.name for model in models])
         meaning = self.interpretation.joined(interpretation or AttributeInterpretation())
         known = {*self._registered, *(model.name for model in models)}
@@ -274,11 +278,17 @@ class ChronicleReasoner:
         return unit
 
 
-def _models(chronicles: Chronicles) -> tuple[tuple[Model, ...], frozenset[str]]:
+def _models(
+    chronicles: Chronicles, values: Mapping[str, Given]
+) -> tuple[tuple[Model, ...], frozenset[str]]:
     """Return chronicles ready to be recognised, and the names of the messages they declare."""
     if isinstance(chronicles, str):
-        chronicles = parse_chronicles(chronicles)
+        chronicles = parse_chronicles(chronicles, values=values)
+    elif isinstance(chronicles, ChronicleFile) and values:
+        chronicles = with_values(chronicles, values)
     if not isinstance(chronicles, ChronicleFile):
+        if values:
+            raise ValueError("expected a text or a file of chronicles to give values to")
         return tuple(chronicles), frozenset()
     messages = [each.name for each in chronicles.signals if isinstance(each, MessageDeclaration)]
     return models_from_chronicles(chronicles), frozenset(messages)

@@ -44,6 +44,14 @@ def recognise(
         int | None,
         typer.Option(min=1, help="Keep at most so many partial instances of a chronicle."),
     ] = None,
+    changes: Annotated[
+        list[str] | None,
+        typer.Option(
+            "--set",
+            metavar="NAME=VALUE",
+            help="Give a parameter of the files another value, such as 'longest=30 s'.",
+        ),
+    ] = None,
     json: Annotated[
         bool, typer.Option("--json", help="Print one JSON document instead of text.")
     ] = False,
@@ -55,10 +63,10 @@ def recognise(
     from traffic.commands.showing_recognitions import recognitions_shown
     from traffic.recognising.following import Settings, delay_from
     from traffic.recognising.opening import open_events, read_events
-    from traffic.recognising.questions import read_question
+    from traffic.recognising.questions import read_question, value_from_text
 
     settings = Settings(delay_from(max_delay), close, limit)
-    question = read_question(chronicles)
+    question = read_question(chronicles, dict(map(value_from_text, changes or ())))
     if str(events) == "-":
         stream = cast("ByteStream", sys.stdin.buffer)  # it has read1, though its type hides it
         reader = read_events(stream, "<stdin>")

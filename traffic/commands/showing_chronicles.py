@@ -8,7 +8,7 @@ from rich.console import Console
 from rich.markup import escape
 from rich.table import Table
 
-from traffic.recognising.library import Entry, Family, Needed, document_of
+from traffic.recognising.library import Entry, Family, FileParameter, Needed, document_of
 
 __all__ = ["entries_shown", "library_shown"]
 
@@ -45,12 +45,18 @@ def entries_shown(family: Family, entries: Sequence[Entry], *, json: bool) -> No
 def _shown(entry: Entry, said: set[str]) -> str:
     meaning = "" if entry.meaning in said else f"{entry.meaning}\n\n"
     needs = "".join(f"\n  {_needed(each)}" for each in entry.needs)
-    return f"{meaning}{entry.text}\n\n{entry.name} looks at{needs}"
+    settings = "".join(f"\n  {_set(each)}" for each in entry.settings)
+    told = f"\n{entry.name} can be set by{settings}" if settings else ""
+    return f"{meaning}{entry.text}\n\n{entry.name} looks at{needs}{told}"
 
 
 def _needed(each: Needed) -> str:
     n = each.n_arguments
     return f"the {each.kind} {each.name} of {n} argument{'' if n == 1 else 's'}"
+
+
+def _set(each: FileParameter) -> str:
+    return f"{each.name} = {each.value}" + (f" ({each.meaning})" if each.meaning else "")
 
 
 def _write(document: object) -> None:

@@ -1,7 +1,9 @@
 """A finished run, opened to be explained: what it found out, and what it keeps."""
 
 import json
+import re
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
 from typing import Any
@@ -12,22 +14,43 @@ import pyarrow.parquet as pq
 from pydantic import ValidationError
 
 from chronicles.events import Recognition, recognition_from_json
-from chronicles.parser import read_chronicles
+from chronicles.specified import read_with_settings
 from chronicles.syntax import Chronicle, ChronicleFile
+from dyknow.errors import SpecificationErrors
 from dyknow.kpl.parser import parse_specification
-from dyknow.kpl.syntax import GeneratorDeclaration, Link
+from dyknow.kpl.settings import plain_value
+from dyknow.kpl.syntax import GeneratorDeclaration, Link, Setting, UnitInstance
 from dyknow.mtl.printer import text_from_formula
 from traffic.errors import ExplanationError
 from traffic.explaining.format import DESCRIPTION, FOLDER, FORMAT, SCHEMAS, VERSION, Description
 from traffic.explaining.roles import Roles
 from traffic.origin import Origin
 from traffic.results import RunResult, read_result
-from traffic.system import IMAGE_SORTS
+from traffic.system import CHRONICLES_SETTINGS, IMAGE_SORTS, chronicle_file
 
-__all__ = ["KeptRun", "open_kept_run", "records_of"]
+__all__ = ["KeptChronicle", "KeptRun", "open_kept_run", "records_of"]
 
 _RECORDING = b"\x89MCAP"
 _SPECIFICATION = "specification"
+_NUMBERED = re.compile(r"^\d+-")
+"""Before the name of a file, where another one that was kept has the same name."""
+
+
+@dataclass(frozen=True, slots=True)
+class KeptChronicle:
+    """A chronicle of a run.
+
+    Attributes:
+        path: Of the file that it is from.
+        file: What that says, with the values that its parameters had in the run.
+        chronicle: The chronicle.
+        stream: The label of the stream of its recognitions; empty if that is not known.
+    """
+
+    path: Path
+    file: ChronicleFile
+    chronicle: Chronicle
+    stream: str
 
 
 class KeptRun:
@@ -81,11 +104,14 @@ class KeptRun:
         ]
 
     @cached_property
-    def chronicles(self) -> Sequence[tuple[Path, ChronicleFile, Chronicle]]:
-        """All chronicles of the run, and the files that they are from."""
-        files = sorted((self.folder / _SPECIFICATION).glob("*.chronicle"))
-        read = [(path, read_chronicles(path)) for path in files]
-        return [(path, file, each) for path, file in read for each in file.chronicles]
+    def chronicles(self) -> Sequence[KeptChronicle]:
+        """All chronicles of the run; those of a file as often as it was used."""
+        return [
+            KeptChronicle(path, file, chronicle, stream)
+            for path in sorted((self.folder / _SPECIFICATION).glob("*.chronicle"))
+            for stream, file in self._readings(path)
+            for chronicle in file.chronicles
+        ]
 
     @cached_property
     def conditions(self) -> Mapping[str, Mapping[str, str]]:
@@ -100,6 +126,21 @@ class KeptRun:
                     "maintain": text_from_formula(process.maintain),
                 }
         return found
+
+    def _readings(self, path: Path) -> Sequence[tuple[str, ChronicleFile]]:
+        """Return what a chronicle file says to each process that has read it, by its label."""
+        found = []
+        for label in self.roles.recognitions:
+            settings = _settings(self.process_of(label))
+            name = settings.get("file")
+            if name is None or not _is_copy(path.name, str(plain_value(name.value))):
+                continue
+            values = [each for each in settings.values() if each.name not in CHRONICLES_SETTINGS]
+            try:
+                found.append((label, read_with_settings(path, values, CHRONICLES_SETTINGS)))
+            except SpecificationErrors:  # it has read another file of this name
+                continue
+        return found or [("", read_with_settings(path, (), CHRONICLES_SETTINGS))]
 
     def process_of(self, label: str) -> str:
         """Return what makes a stream, as the specification writes it; its label if unknown."""
@@ -197,6 +238,18 @@ def _process(text: str) -> Any:
     specification = parse_specification(f"strmgen it = {text}", "<process>")
     (declaration,) = specification.declarations
     return declaration.process if isinstance(declaration, GeneratorDeclaration) else None
+
+
+def _settings(text: str) -> dict[str, Setting]:
+    """Return the settings of the process that *text* describes, by name."""
+    process = _process(text)
+    settings = process.settings if isinstance(process, UnitInstance) else ()
+    return {each.name: each for each in settings}
+
+
+def _is_copy(name: str, setting: str) -> bool:
+    """Return whether a kept file of that name is one that a specification calls *setting*."""
+    return _NUMBERED.sub("", name) == _NUMBERED.sub("", chronicle_file(setting).name)
 
 
 def _short(error: Exception) -> str:

@@ -101,7 +101,7 @@ class Walker:
 
     def is_chronicle(self, name: str) -> bool:
         """Return whether events of this name are recognitions."""
-        return any(chronicle.name == name for _, _, chronicle in self.run.chronicles)
+        return any(each.chronicle.name == name for each in self.run.chronicles)
 
     def streams_to(self, sample: Provenance | None) -> frozenset[str]:
         """Return the streams of events that a recognition told in *sample* was made of.
@@ -110,18 +110,19 @@ class Walker:
         """
         return frozenset() if sample is None else self.run.roles.told_to(sample.stream)
 
-    def match(self, recognition: Recognition) -> tuple[str, Match]:
-        """Put a recognition beside its chronicle; return also the name of the file of that."""
-        named = [each for each in self.run.chronicles if each[2].name == recognition.chronicle]
+    def match(self, recognition: Recognition, stream: str = "") -> tuple[str, Match]:
+        """Put a recognition, told in a stream, beside its chronicle; return also its file."""
+        named = [e for e in self.run.chronicles if e.chronicle.name == recognition.chronicle]
+        named.sort(key=lambda each: each.stream != stream)
         if not named:
             raise ExplanationError(
                 f"'{self.run.folder}' has no chronicle '{recognition.chronicle}' among the files "
                 "that it keeps"
             )
         faults = []
-        for path, file, chronicle in named:
+        for each in named:
             try:
-                return path.name, match_of(recognition, chronicle, file)
+                return each.path.name, match_of(recognition, each.chronicle, each.file)
             except ExplanationError as error:
                 faults.append(error)
         raise faults[0]
@@ -133,9 +134,9 @@ class Walker:
         result: RecognitionResult | None,
         path: tuple[Recognition, ...] = (),
     ) -> RecognitionExplanation:
-        file, match = self.match(recognition)
         found = self._told(recognition)
         sample = None if found is None else self.attributes.provenance(dict(found.row))
+        file, match = self.match(recognition, "" if sample is None else sample.stream)
         streams = self.streams_to(sample)
         events = list(self._events(match, streams, (*path, recognition)))
         counted = list(self._counted(match, streams))

@@ -5,11 +5,12 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from chronicles.comments import comment_of, heading_of
+from chronicles.comments import comment_of, heading_of, remark_on
 from chronicles.event_types import event_type_of
 from chronicles.expansion import expand
+from chronicles.parameters import parameters_behind
 from chronicles.parser import read_chronicles
-from chronicles.syntax import Chronicle, ChronicleFile, EventType
+from chronicles.syntax import Chronicle, ChronicleFile, EventType, ParameterDeclaration
 from dyknow.source_text import nearest_name
 from traffic.bundled import data_folder
 from traffic.errors import RequestError
@@ -18,6 +19,7 @@ __all__ = [
     "ENDING",
     "Entry",
     "Family",
+    "FileParameter",
     "Needed",
     "bundled_families",
     "document_of",
@@ -44,6 +46,21 @@ class Needed:
 
 
 @dataclass(frozen=True, slots=True)
+class FileParameter:
+    """A value in a chronicle file that whoever uses the file may replace.
+
+    Attributes:
+        name: Its name.
+        value: As it is written.
+        meaning: The comment behind it, or before it.
+    """
+
+    name: str
+    value: str
+    meaning: str
+
+
+@dataclass(frozen=True, slots=True)
 class Entry:
     """A chronicle.
 
@@ -53,6 +70,7 @@ class Entry:
         parameters: What a recognition tells, without marks.
         meaning: The comment before it, or else the comment at the top of its file.
         needs: The events that it looks at, in the order of the text.
+        settings: The parameters of its file on which it depends.
         text: How it is written.
     """
 
@@ -61,6 +79,7 @@ class Entry:
     parameters: tuple[str, ...]
     meaning: str
     needs: tuple[Needed, ...]
+    settings: tuple[FileParameter, ...]
     text: str
 
     @property
@@ -149,6 +168,10 @@ def document_of(entry: Entry) -> dict[str, Any]:
             {"name": each.name, "kind": each.kind, "arguments": each.n_arguments}
             for each in entry.needs
         ],
+        "settings": [
+            {"name": each.name, "value": each.value, "meaning": each.meaning}
+            for each in entry.settings
+        ],
         "text": entry.text,
     }
 
@@ -182,8 +205,15 @@ def _entry(chronicle: Chronicle, file: ChronicleFile, family: str, heading: str)
         parameters=tuple(p.name.removeprefix("?") for p in chronicle.parameters),
         meaning=comment_of(chronicle) or heading,
         needs=tuple(dict.fromkeys(_needs(chronicle, file))),
+        settings=tuple(map(_file_parameter, parameters_behind(chronicle, file))),
         text=span.source.text[span.start : span.end],
     )
+
+
+def _file_parameter(parameter: ParameterDeclaration) -> FileParameter:
+    written = parameter.value.span
+    value = written.source.text[written.start : written.end]
+    return FileParameter(parameter.name, value, remark_on(parameter))
 
 
 def _needs(chronicle: Chronicle, file: ChronicleFile) -> Iterator[Needed]:

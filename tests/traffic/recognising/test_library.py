@@ -104,7 +104,9 @@ def test_the_library_is_one_document(arguments, monkeypatch, capsys) -> None:
 
     for entry in entries:
         assert entry["chronicle"] in shown
-        assert set(entry) == {"family", "chronicle", "parameters", "meaning", "needs", "text"}
+        assert set(entry) == {
+            "family", "chronicle", "parameters", "meaning", "needs", "settings", "text"
+        }  # fmt: skip
 
 
 def test_several_files_are_one_question(path: Path) -> None:
