@@ -67,6 +67,9 @@ class Candidates:
         """
         if self._condition.is_false:
             return _NO_ROWS, _NO_ROWS
+        if not len(lower.table) + len(self._lower) + len(self._far_lower):
+            self._time = now
+            return _NO_ROWS, _NO_ROWS
         self._keep(lower, upper)
         self._begin_far(step, lower, upper)
         self._add(lower, upper, *self._within_reach(lower.table, upper.table))

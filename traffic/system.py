@@ -285,7 +285,7 @@ def read_specification(path: Path | None = None, option: str = "--specification"
 
 def image_labels(specification: Specification) -> frozenset[str]:
     """Return the labels of all generators of images, and of states of images."""
-    sorts = _Sorts(specification)
+    sorts = _sorts_in(specification)
     made = {text_from(each.label): each.process for each in sorts.generators}
     used = {
         text_from(each.provider): each.provider
@@ -299,7 +299,7 @@ def image_labels(specification: Specification) -> frozenset[str]:
 
 def labels_of_sort(specification: Specification, *wanted: str) -> tuple[str, ...]:
     """Return the labels of the generators whose process gives values of one of these sorts."""
-    sorts = _Sorts(specification)
+    sorts = _sorts_in(specification)
     return tuple(
         text_from(each.label)
         for each in sorts.generators
@@ -310,7 +310,7 @@ def labels_of_sort(specification: Specification, *wanted: str) -> tuple[str, ...
 
 def sort_of(specification: Specification, label: str) -> str:
     """Return the sort of the values of a declared generator; `any` if it is not one."""
-    sorts = _Sorts(specification)
+    sorts = _sorts_in(specification)
     made = [each.process for each in sorts.generators if text_from(each.label) == label]
     found = frozenset[str]().union(*map(sorts.of, made))
     return next(iter(found)) if len(found) == 1 else ANY_SORT
@@ -318,7 +318,7 @@ def sort_of(specification: Specification, label: str) -> str:
 
 def outputs_of(specification: Specification) -> tuple[str, ...]:
     """Return the names of the output streams of *specification*, without those of images."""
-    sorts = _Sorts(specification)
+    sorts = _sorts_in(specification)
     return tuple(
         output.name.text
         for output in sorts.outputs
@@ -328,7 +328,7 @@ def outputs_of(specification: Specification) -> tuple[str, ...]:
 
 def outputs_behind(specification: Specification, labels: Collection[str]) -> tuple[str, ...]:
     """Return the names of the output streams that are made of the streams of *labels*."""
-    sorts = _Sorts(specification)
+    sorts = _sorts_in(specification)
     features = {label.partition("[")[0] for label in labels}
     return tuple(
         output.name.text
@@ -339,7 +339,7 @@ def outputs_behind(specification: Specification, labels: Collection[str]) -> tup
 
 def outputs_of_sort(specification: Specification, sort: str) -> tuple[str, ...]:
     """Return the names of the output streams of *specification* that have this sort alone."""
-    sorts = _Sorts(specification)
+    sorts = _sorts_in(specification)
     return tuple(
         output.name.text for output in sorts.outputs if sorts.of(output.stream.provider) == {sort}
     )
@@ -357,6 +357,11 @@ def specification_from(text: str, name: str) -> Specification:
     specification = parse_specification(text, name)
     check(specification)
     return specification
+
+
+@lru_cache(maxsize=_MOST_TEXTS)
+def _sorts_in(specification: Specification) -> "_Sorts":
+    return _Sorts(specification)
 
 
 class _Sorts:
@@ -377,6 +382,11 @@ class _Sorts:
                 generator
             )
 
+        self._features_before = {
+            feature: frozenset[str]().union(*(_features_in(each.process) for each in made))
+            for feature, made in self._generators_by_feature.items()
+        }
+
     def of(self, node: Any) -> frozenset[str]:
         """Return the sorts of what a process or a provider gives, or of what that is made of."""
         if isinstance(node, SourceInstance | UnitInstance | Link):
@@ -385,14 +395,14 @@ class _Sorts:
         self._reach(node, reached)
         return frozenset().union(*reached.values())
 
-    def features_behind(self, node: Any, seen: frozenset[str] = frozenset()) -> frozenset[str]:
+    def features_behind(self, node: Any) -> frozenset[str]:
         """Return the features of all generators that a process or a provider is made of."""
-        found = seen
-        for feature in _features_in(node) - seen:
-            found |= {feature}
-            for generator in self._generators_by_feature.get(feature, ()):
-                found = self.features_behind(generator.process, found)
-        return found
+        found = set[str]()
+        new = set(_features_in(node))
+        while new:
+            found |= new
+            new = {f for feature in new for f in self._features_before.get(feature, ())} - found
+        return frozenset(found)
 
     def _reach(self, node: Any, reached: dict[str, frozenset[str]]) -> None:
         """Note the sorts of the processes that make the values of *node*, by their features."""

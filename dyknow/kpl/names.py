@@ -6,6 +6,7 @@ From elsewhere it can be merged: whether it exists depends on the members of a s
 
 from collections.abc import Collection, Iterable, Iterator
 from dataclasses import dataclass, fields, is_dataclass
+from functools import cache
 from typing import Any
 
 from dyknow.kpl.syntax import (
@@ -41,6 +42,7 @@ __all__ = [
     "descendants",
     "labels_of",
     "may_be_one",
+    "parts_of",
     "streams_of",
 ]
 
@@ -253,8 +255,19 @@ def descendants(node: Any) -> Iterator[Any]:
             yield from descendants(part)
     elif is_dataclass(node) and not isinstance(node, Span):
         yield node
-        for each in fields(node):
-            yield from descendants(getattr(node, each.name))
+        for part in parts_of(node).values():
+            yield from descendants(part)
+
+
+def parts_of(node: Any) -> dict[str, Any]:
+    """Return what a piece of a specification is made of, by name."""
+    names = _names_of_parts(type(node))  # type: ignore[arg-type]  # classes can be hashed
+    return {name: getattr(node, name) for name in names}
+
+
+@cache
+def _names_of_parts(kind: Any) -> tuple[str, ...]:
+    return tuple(each.name for each in fields(kind))
 
 
 def _scoped(

@@ -4,10 +4,11 @@ A name may stand for an object symbol, a time in a policy, or a value of a setti
 """
 
 from collections.abc import Mapping
-from dataclasses import fields, is_dataclass, replace
+from dataclasses import is_dataclass, replace
 from typing import Any, TypeVar
 
 from dyknow.errors import SortMismatchError, SpecificationError, UnknownNameError
+from dyknow.kpl.names import parts_of
 from dyknow.kpl.syntax import (
     Condition,
     Constraint,
@@ -105,7 +106,7 @@ class _Binder:
 
     def _parts(self, node: Any, bound: Any) -> Any:
         """Return *node* with each of its parts replaced, if there is anything to replace."""
-        parts = {each.name: getattr(node, each.name) for each in fields(node)}
+        parts = parts_of(node)
         new = {name: bound(part) for name, part in parts.items()}
         changed = {name: part for name, part in new.items() if part is not parts[name]}
         return replace(node, **changed) if changed else node

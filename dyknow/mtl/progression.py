@@ -165,6 +165,8 @@ class ProgressionTable:
         if truth.shape != (len(self.atoms), len(residuals)):
             expected = (len(self.atoms), len(residuals))
             raise ValueError(f"expected truth of shape {expected}, found {truth.shape}")
+        if not len(residuals):
+            return residuals
         if len(self.atoms) > _MOST_TABULATED_ATOMS:
             return self._progress_sparsely(residuals, truth, elapsed)
         keys = residuals * self._width

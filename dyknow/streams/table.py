@@ -62,8 +62,11 @@ class Table:
 
     def select(self, rows: npt.NDArray[np.bool_] | npt.NDArray[np.intp]) -> "Table":
         """Return the rows for which a mask is true, or those with the given positions."""
-        columns = {name: column[rows] for name, column in self.columns.items()}
-        return Table(self.sort, self.ids[rows], columns)
+        found = Table.__new__(Table)  # of columns that have been checked
+        found.sort = self.sort
+        found.ids = self.ids[rows]
+        found.columns = {name: column[rows] for name, column in self.columns.items()}
+        return found
 
     def with_columns(self, **columns: Column) -> "Table":
         """Return the same objects with *columns* added or replaced."""
@@ -79,7 +82,7 @@ class Table:
 
 def positions_of(wanted: Ids, ids: Ids) -> npt.NDArray[np.intp]:
     """Return, for each id of *wanted*, its position in *ids*, or -1; *ids* need no order."""
-    if not len(ids):
+    if not len(ids) or not len(wanted):
         return np.full(len(wanted), -1, dtype=np.intp)
     order = np.argsort(ids, kind="stable")
     at = np.minimum(np.searchsorted(ids, wanted, sorter=order), len(ids) - 1)

@@ -74,6 +74,8 @@ class Changes(Reactive):
         self, table: Table, name: str, old: Column, new: Column | int, time: TimePoint
     ) -> Iterator[Event]:
         changed = np.flatnonzero(old != new)
+        if not len(changed):
+            return
         rows = (
             self._arguments(table.select(changed)),
             old[changed].tolist(),
