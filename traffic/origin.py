@@ -13,9 +13,19 @@ from traffic.request import RunRequest
 from traffic.scenarios import Scenario
 from traffic.sumo.opening import network_of
 
-__all__ = ["Origin", "digest_of", "origin_of", "system_name", "versions", "write_origin"]
+__all__ = [
+    "PROGRAM",
+    "Origin",
+    "digest_of",
+    "origin_of",
+    "system_name",
+    "versions",
+    "write_origin",
+]
 
-_DISTRIBUTION = "dyknow-traffic"
+PROGRAM = "dyknow-traffic"
+"""What this program is called among the versions of an origin."""
+
 _OTHERS = ("libsumo", "numpy", "opencv-python-headless", "scipy", "shapely")
 
 
@@ -68,7 +78,7 @@ def origin_of(request: RunRequest, files: Iterable[Path] = ()) -> Origin:
 def versions() -> dict[str, str]:
     """Return the versions of this program, of Python, and of what results may depend on."""
     return {
-        _DISTRIBUTION: _version(_DISTRIBUTION),
+        PROGRAM: _version(PROGRAM),
         "python": platform.python_version(),
         **{name: _version(name) for name in _OTHERS},
     }

@@ -11,7 +11,7 @@ from pydantic import ValidationError
 from dyknow.kpl.syntax import Specification
 from dyknow.service.governor import PeriodChange
 from traffic.errors import ReplayError
-from traffic.origin import Origin
+from traffic.origin import PROGRAM, Origin, versions
 from traffic.recording.periods import changes_from_text, text_from_changes
 from traffic.system import specification_from
 
@@ -104,4 +104,14 @@ class RunDescription:
             )
         except (ValidationError, ValueError, TypeError) as error:
             said = str(error).splitlines()[0]
-            raise ReplayError(path, f"what it says of its run cannot be read: {said}") from error
+            fault = f"what it says of its run cannot be read: {said}{_writer(metadata[_ORIGIN])}"
+            raise ReplayError(path, fault) from error
+
+
+def _writer(origin: str) -> str:
+    """Return, as the end of a message, which version of this program wrote an origin, if known."""
+    try:
+        then = json.loads(origin)["versions"][PROGRAM]
+    except (ValueError, TypeError, KeyError):
+        return ""
+    return f"; version {then} of this program wrote it, this is {versions()[PROGRAM]}"

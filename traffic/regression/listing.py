@@ -47,7 +47,7 @@ def listed(entry: Entry, making: Making | None) -> Listed:
         expected = str(tally_of(entry.read_expected()))
         size = entry.recording.stat().st_size
     except (DyKnowError, TrafficError, OSError) as error:
-        return Listed(entry, shows, fault=str(error))
+        return Listed(entry, shows, fault=entry.fault_of(error))
     asked = origin.request
     noise = f", {asked['position_noise']:g} m" if asked["position_noise"] else ""
     piece = f", {making.begin} to {making.end}" if making is not None else ""

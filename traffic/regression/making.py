@@ -7,7 +7,7 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any
 
-from dyknow.time import SECOND, text_from_duration
+from dyknow.time import SECOND, Duration, text_from_duration
 from traffic.errors import RequestError, ScenarioError, TrafficError
 from traffic.origin import Origin, origin_of
 from traffic.recording.describing import RunDescription
@@ -126,13 +126,19 @@ def _making(said: RunDescription, addition: Addition) -> Making:
         "scenario": origin.scenario.name,
         "seed": int(origin.request["seed"] or 0),
         "settings": _settings(said, addition.recognise),
-        "from": f"{text_from_duration(piece.begin)} ms",
-        "to": f"{text_from_duration(piece.end)} ms",
+        "from": _text_from(piece.begin),
+        "to": _text_from(piece.end),
     }
     making = Making.model_validate(values)
     if _is_that_of(making, origin):
         return making
     return Making.model_validate({**values, "scenario": None, "settings": {}})
+
+
+def _text_from(time: Duration) -> str:
+    """Return a time in seconds, or in milliseconds if it is no whole number of those."""
+    whole, rest = divmod(time, SECOND)
+    return f"{text_from_duration(time)} ms" if rest else f"{whole} s"
 
 
 def _settings(said: RunDescription, recognise: tuple[str, ...] | None) -> dict[str, Any]:
@@ -145,7 +151,7 @@ def _settings(said: RunDescription, recognise: tuple[str, ...] | None) -> dict[s
     names = ",".join(recognise) if recognise else asked.get("recognise")
     settings["recognise"] = names or "all"
     if scenario.duration != _usual_duration(scenario.name):
-        settings["duration"] = f"{scenario.duration / SECOND:g} s"
+        settings["duration"] = _text_from(scenario.duration)
     return settings | {k: v for k, v in said.parameters.items() if k not in _OPTIONS}
 
 

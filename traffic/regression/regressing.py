@@ -85,8 +85,7 @@ def regress(
         try:
             difference = _difference(entry, system)
         except (RecordingError, TrafficError, NetworkError, OSError) as error:
-            hint = (hints or {}).get(entry.name, "")
-            fault = f"{error}; {hint}" if hint else str(error)
+            fault = "; ".join(filter(None, [entry.fault_of(error), (hints or {}).get(entry.name)]))
         yield Regression(entry, difference, time.perf_counter() - began, fault)
 
 

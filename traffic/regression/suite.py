@@ -38,6 +38,11 @@ class Entry:
         """The file that says what is to be recognised."""
         return self.folder / f"{self.name}{_EXPECTED}"
 
+    def fault_of(self, error: Exception) -> str:
+        """Return what is wrong with the recording if using it gave this error."""
+        is_missing = isinstance(error, FileNotFoundError) and not self.recording.exists()
+        return f"there is no '{self.recording}'" if is_missing else str(error)
+
     def read_expected(self) -> str:
         """Return what is to be recognised.
 

@@ -1,83 +1,24 @@
-"""The regression suite: cutting, replaying, telling what differs."""
+"""Replaying recordings, and telling what differs."""
 
 import shutil
 from pathlib import Path
 
 import pytest
 
-from dyknow.time import SECOND, Duration
-from traffic.errors import RequestError
-from traffic.recording.rebuilding import describe, open_run, recorded_labels, simulation_of
-from traffic.regression.cutting import Piece, cut
-from traffic.regression.regressing import Addition, add, regress, update
-from traffic.regression.request import RegressionRequest
-from traffic.regression.suite import Entry, bundled_suite, entries
-from traffic.request import RecordingRequest, RunRequest
-from traffic.running import run_scenario
-from traffic.sumo.replayed import TRUTH
+from dyknow.recordings.recorder import Recorder
+from tests.support.regression import entry_of
+from traffic.errors import ReplayError, RequestError
+from traffic.recording.rebuilding import open_run
+from traffic.regression.regressing import System, regress, replayed, update
+from traffic.regression.suite import Entry
 
 pytestmark = [pytest.mark.sumo, pytest.mark.slow]
 
 
-@pytest.fixture(scope="module")
-def recording(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """Return a recording of 20 s on the rural road, from positions that are 1 m wrong."""
-    folder = tmp_path_factory.mktemp("recorded")
-    request = RunRequest.from_texts(
-        scenario="rural",
-        view="truth",
-        position_noise=1.0,
-        duration="20 s",
-        recognise="turns,overtakes",
-        out=folder / "run",
-        record=folder / "run.mcap",
-    )
-    assert request.recording == RecordingRequest(folder / "run.mcap")
-    run_scenario(request, lambda *_: None)
-    return folder / "run.mcap"
-
-
-def seconds(value: float) -> Duration:
-    """Return a duration of so many seconds."""
-    return Duration(int(value * SECOND))
-
-
-def test_a_piece_has_the_sources_and_the_truth_in_its_own_time(
-    recording: Path, tmp_path: Path
-) -> None:
-    """Sample by sample what was recorded between both times, the first of them at zero."""
-    out = tmp_path / "piece.mcap"
-    cut(recording, Piece(seconds(5), seconds(12)), out)
-
-    with open_run(recording) as whole, open_run(out) as piece:
-        assert {"vehicles", TRUTH} <= piece.topics
-        assert "cars" not in recorded_labels(piece)
-        expected = [
-            (each.valid_time - seconds(5), each.value["position"].tolist())
-            for each in whole.samples("vehicles")
-            if seconds(5) <= each.valid_time <= seconds(12)
-        ]
-        found = [(s.valid_time, s.value["position"].tolist()) for s in piece.samples("vehicles")]
-        before, after = simulation_of(whole), simulation_of(piece)
-        assert before is not None
-        assert after is not None
-        first = after.step()
-        while (frame := before.step()) is not None and frame.time < seconds(5):
-            pass
-        assert first is not None
-        assert frame is not None
-        assert describe(piece).origin.scenario.duration == seconds(7)
-
-    assert found == expected
-    assert [after.names[i] for i in first.vehicles.ids] == [
-        before.names[i] for i in frame.vehicles.ids
-    ]
-
-
 def test_what_is_recognised_otherwise_is_told_as_a_diff(recording: Path, tmp_path: Path) -> None:
     """A line too many and a line that is missing; nothing when all is as expected."""
-    entry = add(Addition(recording, Piece(seconds(0), seconds(15)), Entry(tmp_path, "rural")))
-    text = entry.expected.read_text("utf-8")
+    entry = entry_of(recording, tmp_path)
+    text = entry.read_expected()
     lines = text.splitlines(keepends=True)
 
     (same,) = regress([entry])
@@ -85,52 +26,75 @@ def test_what_is_recognised_otherwise_is_told_as_a_diff(recording: Path, tmp_pat
     (different,) = regress([entry])
     changed = list(update([entry]))
 
-    assert same.difference == ()
+    assert (same.difference, same.fault) == ((), "")
     assert "overtake[" in text
     assert "-  1.0  2.0  flight[car1]" in different.difference
     assert f"+{lines[-1].rstrip()}" in different.difference
     assert changed == [entry]
-    assert entry.expected.read_text("utf-8") == text
+    assert entry.read_expected() == text
     assert list(update([entry])) == []
 
 
-@pytest.mark.parametrize(("begin", "end"), [(5, 5), (6, 5), (0, 21), (-1, 3)])
-def test_a_piece_must_be_in_the_recording(
-    recording: Path, tmp_path: Path, begin: float, end: float
-) -> None:
-    """From before to, inside of the whole; nothing is written otherwise."""
-    with pytest.raises(RequestError, match="a piece of the 20000 ms"):
-        cut(recording, Piece(seconds(begin), seconds(end)), tmp_path / "x.mcap")
-    assert not list(tmp_path.iterdir())
+def test_recordings_are_replayed_with_other_settings(recording: Path, tmp_path: Path) -> None:
+    """Those of parameters and of processes, and other chronicles: what is lost shows."""
+    entry = entry_of(recording, tmp_path)
+    chronicles = tmp_path / "mine.chronicle"
+    chronicles.write_text("attribute a[?x]\nchronicle none[?x] { event(a[?x]:(?, 1), t) }\n")
 
-
-def test_requests_are_checked(recording: Path, tmp_path: Path) -> None:
-    """Options that have no meaning without others, names that are none, folders that are not."""
-    shutil.copy(recording, tmp_path / "one.mcap")
-    texts = RegressionRequest.from_texts
-
-    assert texts(suite=tmp_path, names=["one"]).entries == (Entry(tmp_path, "one"),)
-    assert texts(suite=tmp_path, add=recording, name="two").addition == Addition(
-        recording, Piece(Duration(0), seconds(20)), Entry(tmp_path, "two")
-    )
-    for options, said in (
-        ({"names": ["on"]}, "did you mean 'one'"),
-        ({"suite": tmp_path / "no"}, "a folder with recordings"),
-        ({"name": "x"}, "only has a meaning with --add"),
-        ({"end": "3s"}, "only has a meaning with --add"),
-        ({"add": recording}, "a name of small letters"),
-        ({"add": recording, "name": "a b"}, "a name of small letters"),
-        ({"add": recording, "name": "x", "update": True}, "neither names nor --update"),
-        ({"add": recording, "name": "x", "begin": "soon"}, "a time such as"),
+    for changes in (
+        {"position_noise": 40},
+        {"overtakes.file": str(chronicles)},
+        {"cars.remove_after": 1},
     ):
-        with pytest.raises(RequestError, match=said):
-            texts(**{"suite": tmp_path, **options})  # type: ignore[arg-type]
+        (found,) = regress([entry], System.changed(changes))
+        assert found.fault == ""
+        lost = [line for line in found.difference if line.startswith("-") and "overtake" in line]
+        assert bool(lost) is ("cars.remove_after" not in changes)
+    with pytest.raises(RequestError, match="a parameter"):
+        System.changed({"no_such": 1})
 
 
-@pytest.mark.golden
-@pytest.mark.parametrize("entry", entries(bundled_suite()), ids=lambda entry: entry.name)
-def test_recorded_scenarios_are_recognised_as_expected(entry: Entry) -> None:
-    """Every recording of the suite, with the specification and the chronicles as they are now."""
-    (found,) = regress([entry])
+def test_those_that_cannot_be_replayed_do_not_stop_the_others(
+    recording: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Each is told with what is wrong and what to do; nothing is missed in silence."""
+    whole = entry_of(recording, tmp_path, "whole", 3)
+    broken = {
+        name: Entry(tmp_path, name)
+        for name in ("cut-off", "no-recording", "other-format", "not-there", "unexpected")
+    }
+    for entry in broken.values():
+        entry.expected.write_text(whole.read_expected())
+    data = whole.recording.read_bytes()
+    broken["cut-off"].recording.write_bytes(data[: len(data) // 2])
+    broken["no-recording"].recording.write_text("nothing of the kind")
+    with monkeypatch.context() as patch:
+        patch.setattr("dyknow.recordings.recorder.FORMAT", "0")
+        with Recorder(broken["other-format"].recording, metadata={}):
+            pass
+    shutil.copy(whole.recording, broken["unexpected"].recording)
+    broken["unexpected"].expected.unlink()
 
-    assert found.difference == ()
+    found = list(regress([*broken.values(), whole], hints={"cut-off": "do this"}))
+
+    said = {each.entry.name: each.fault for each in found}
+    assert "not all of its run is there: the recording is cut off" in said["cut-off"]
+    assert said["cut-off"].endswith("; do this")
+    assert "expected a recording in MCAP" in said["no-recording"]
+    assert "expected a recording of format 1, found format 0" in said["other-format"]
+    assert "there is no" in said["not-there"]
+    assert "'traffic regress --update unexpected' writes it" in said["unexpected"]
+    assert said["whole"] == ""
+
+
+def test_a_recording_of_another_version_names_it(recording: Path, tmp_path: Path) -> None:
+    """When what it says of its run cannot be understood any more."""
+    old = tmp_path / "old.mcap"
+    with open_run(recording) as opened:
+        metadata = dict(opened.metadata)
+    metadata["origin"] = '{"versions": {"dyknow-traffic": "0.0.7"}, "scene": 3}'
+    with Recorder(old, metadata=metadata):
+        pass
+
+    with pytest.raises(ReplayError, match=r"version 0\.0\.7 of this program wrote it, this is"):
+        replayed(old)
