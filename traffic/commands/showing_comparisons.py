@@ -4,33 +4,30 @@ from pydantic_core import to_json
 from rich.box import SIMPLE_HEAD
 from rich.console import Console
 from rich.markup import escape
-from rich.table import Table
+from rich.table import Column, Table
 
 from traffic.experiments.comparing import Comparison, Difference
-from traffic.experiments.designs import Cell
 from traffic.experiments.levels import headings_of
 from traffic.experiments.measures import Share
 
 __all__ = ["json_from_comparison", "show_comparison"]
 
-_MOST_CELLS = 10
-
 
 def show_comparison(comparison: Comparison) -> None:
     """Print both sides of each measure of each cell, and where the difference lies."""
     caption = (
-        "in brackets, where the difference lies with a confidence of 95 % (Newcombe); "
+        "in brackets, where the difference lies with a confidence of 95 %, in percent (Newcombe); "
         "of twenty comparisons of equals, one looks clear by chance"
     )
-    table = Table(
-        *map(escape, headings_of([*comparison.differences[0].cell])),
+    names = [
+        *headings_of([*comparison.differences[0].cell]),
         "measure",
-        escape(comparison.one),
-        escape(comparison.other),
-        "difference",
-        box=SIMPLE_HEAD,
-        caption=caption,
-    )
+        comparison.one,
+        comparison.other,
+    ]
+    columns = [Column(escape(name), overflow="fold") for name in names]
+    widest = Column("difference", min_width=len("difference"))
+    table = Table(*columns, widest, box=SIMPLE_HEAD, caption=caption)
     for each in comparison.differences:
         sides = (_share(each.one), _share(each.other))
         levels = [escape(str(level)) for level in each.cell.values()]
@@ -39,10 +36,6 @@ def show_comparison(comparison: Comparison) -> None:
     console.print(table)
     for remark in comparison.remarks:
         console.print(escape(remark), highlight=False)
-    for name, cell in comparison.only[:_MOST_CELLS]:
-        console.print(f"only {escape(name)} has {_cell(cell)}", highlight=False)
-    if len(comparison.only) > _MOST_CELLS:
-        console.print(f"and {len(comparison.only) - _MOST_CELLS} more", highlight=False)
 
 
 def json_from_comparison(comparison: Comparison) -> str:
@@ -64,10 +57,6 @@ def json_from_comparison(comparison: Comparison) -> str:
     return to_json(document, indent=1).decode()
 
 
-def _cell(cell: Cell) -> str:
-    return escape(", ".join(f"{name} {level}" for name, level in cell.items())) or "all"
-
-
 def _share(share: Share) -> str:
     if share.value is None:
         return "[dim]–[/]"
@@ -78,6 +67,6 @@ def _difference(each: Difference) -> str:
     if each.one.value is None or each.other.value is None:
         return "[dim]–[/]"
     low, high = each.interval
-    text = f"{each.other.value - each.one.value:+.1%} ({low:+.1%} to {high:+.1%})"
+    text = f"{each.other.value - each.one.value:+.1%} ({100 * low:+.0f} to {100 * high:+.0f})"
     colour = "green" if low > 0 else "red"
     return f"[{colour}]{text}[/]" if each.is_clear else f"[dim]{text}[/]"

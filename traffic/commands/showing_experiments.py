@@ -9,10 +9,11 @@ from rich.console import Console
 from rich.markup import escape
 from rich.progress import BarColumn, TextColumn
 from rich.progress import Progress as Bar
-from rich.table import Table
+from rich.table import Column, Table
 
 from traffic.experiments.conducting import OnProgress, Progress
 from traffic.experiments.estimating import Estimate
+from traffic.experiments.levels import headings_of
 from traffic.experiments.measures import Share
 from traffic.experiments.reading import bundled_designs, read_design
 from traffic.experiments.running import Experiment
@@ -28,7 +29,7 @@ __all__ = [
     "show_experiment",
 ]
 
-INTERVALS = "in brackets, where the truth lies with a confidence of 95 % (Wilson)"
+INTERVALS = "in brackets, where the truth lies with a confidence of 95 %, in percent (Wilson)"
 """What stands below a table of shares."""
 
 _MOST_ERRORS = 10
@@ -88,8 +89,9 @@ def show_cells(
     varying: Sequence[str], measures: Sequence[str], cells: Sequence[CellMeasures]
 ) -> None:
     """Print a row for each cell."""
-    names = [*varying, "runs", "failed", *measures]
-    table = Table(*map(escape, names), box=SIMPLE_HEAD, caption=INTERVALS)
+    names = [*headings_of(varying), "runs", "failed", *measures]
+    columns = [Column(escape(name), overflow="fold") for name in names]
+    table = Table(*columns, box=SIMPLE_HEAD, caption=INTERVALS)
     for cell in cells:
         levels = [escape(str(cell.cell[name])) for name in varying]
         shares = [share_text(cell.shares[measure]) for measure in measures]
@@ -102,7 +104,7 @@ def share_text(share: Share) -> str:
     if share.value is None:
         return "[dim]–[/]"
     low, high = share.interval
-    return f"{share.value:.1%} [dim]({low:.0%}–{high:.0%})[/]"
+    return f"{share.value:.1%} [dim]({100 * low:.0f}–{100 * high:.0f})[/]"
 
 
 def _told(progress: Progress) -> str:

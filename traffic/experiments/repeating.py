@@ -3,6 +3,7 @@
 import shlex
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from pathlib import Path
 
 from traffic.experiments.cases import Case, Outcome, cases_of
 from traffic.experiments.designs import Level
@@ -11,6 +12,8 @@ from traffic.experiments.running import Experiment
 from traffic.request import OPTIONS
 
 __all__ = ["CellRuns", "command_of", "runs_of_cells"]
+
+_SPECIFICATION = "specification"
 
 
 @dataclass(frozen=True, slots=True)
@@ -36,10 +39,20 @@ def runs_of_cells(experiment: Experiment) -> list[CellRuns]:
     return [_runs_of(experiment, cases) for cases in by_cell.values()]
 
 
-def command_of(case: Case) -> str:
-    """Return the command line that does a run again, without its seed."""
-    words = ["traffic", "run", *_scenario(case), *_words_of(case.settings)]
-    return shlex.join(words)
+def command_of(case: Case, files: Sequence[str] = ()) -> str:
+    """Return the command line that does a run again, without its seed.
+
+    Args:
+        case: The run.
+        files: Paths of what the runs of its experiment have read; the folder of an experiment
+            has a copy of the design only, so that what was beside the design is found there.
+    """
+    settings = dict(case.settings)
+    if _SPECIFICATION in settings:
+        settings[_SPECIFICATION] = _path(case, str(settings[_SPECIFICATION]), files)
+    is_file = case.scenario.endswith(".toml")
+    scenario = _path(case, case.scenario, files) if is_file else case.scenario
+    return shlex.join(["traffic", "run", scenario, *_words_of(settings)])
 
 
 def _runs_of(experiment: Experiment, cases: Sequence[Case]) -> CellRuns:
@@ -47,7 +60,7 @@ def _runs_of(experiment: Experiment, cases: Sequence[Case]) -> CellRuns:
     found = {seed: outcome for seed, outcome in done.items() if outcome is not None}
     well = {seed: outcome for seed, outcome in found.items() if outcome.error is None}
     return CellRuns(
-        command=command_of(cases[0]),
+        command=command_of(cases[0], experiment.files),
         missed={m: tuple(_missed(m, well)) for m in experiment.design.measures},
         failed=tuple(seed for seed in found if seed not in well),
     )
@@ -63,9 +76,11 @@ def _missed(measure: str, outcomes: Mapping[int, Outcome]) -> Iterator[int]:
             yield seed
 
 
-def _scenario(case: Case) -> list[str]:
-    is_file = case.scenario.endswith(".toml")
-    return [str(case.folder / case.scenario) if is_file else case.scenario]
+def _path(case: Case, name: str, files: Sequence[str]) -> str:
+    """Return the path of a file that a design names."""
+    beside = case.folder / name
+    same = [file for file in files if Path(file).name == beside.name]
+    return str(beside) if beside.exists() or not same else same[0]
 
 
 def _words_of(settings: Mapping[str, Level]) -> Iterator[str]:

@@ -30,6 +30,7 @@ class Experiment:
         errors: Why runs failed: a text for each failed run, with its settings.
         versions: Of the program and of what results may depend on.
         outcomes: What became of each run, by key.
+        files: Paths of the files that its runs have read.
     """
 
     path: Path
@@ -38,6 +39,7 @@ class Experiment:
     errors: list[str]
     versions: dict[str, str]
     outcomes: Mapping[str, Outcome] = field(default_factory=dict, repr=False)
+    files: tuple[str, ...] = ()
 
 
 def run_experiment(request: ExperimentRequest, on_progress: OnProgress) -> Experiment:
@@ -98,7 +100,9 @@ def read_experiment(path: Path, design: Design | None = None) -> Experiment:
         for outcome in outcomes.values()
         if outcome.error is not None
     ]
-    return Experiment(path, design, cells, errors, basis.versions, outcomes)
+    return Experiment(
+        path, design, cells, errors, basis.versions, outcomes, tuple(basis.files_sha256)
+    )
 
 
 def _engine(request: ExperimentRequest) -> AbstractContextManager[Engine]:

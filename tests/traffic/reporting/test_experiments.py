@@ -16,6 +16,12 @@ from traffic.experiments.tables import measure_cells
 from traffic.reporting.experiments import page_of_experiments
 from traffic.reporting.pages import write_page
 
+PLACE = (
+    "measure=overtake.detection&columns=position_noise&rows=scenario.acts.overtake.speed"
+    "&groups=sample_period"
+)
+"""What is shown, as an address says it."""
+
 PUBLISHED = bundled_cell_files()["table-8.2-published"]
 
 
@@ -72,7 +78,7 @@ def test_a_browser_shows_the_shares(tmp_path: Path, width: int) -> None:
     page = tmp_path / "page.html"
     write_page(page_of_experiments([experiment()]), page)
 
-    dom = in_browser(page, width, "measure=overtake.detection&cell=1.0.2")
+    dom = in_browser(page, width, f"{PLACE}&cell=1.0.2&run=0.33")
 
     assert '<button type="button" class="good strong" style="--weight:100%"' in dom
     assert "200 ms · 15 m/s · 9 m: 20 % (5–51 %), 2 of 10" in dom
@@ -80,6 +86,11 @@ def test_a_browser_shows_the_shares(tmp_path: Path, width: int) -> None:
     assert "overtake.detection by position noise" in dom
     assert "All that is chosen: 46 % (55 of 120)" in dom
     assert "8 of 10 runs fall short" in dom
+    assert (
+        "traffic run rural --view truth --sample-period '200 ms' --set "
+        "scenario.acts.overtake.speed=15 --position-noise 9 --seed 33 --out look\n"
+        "traffic report look --html look.html"
+    ) in dom
 
 
 @pytest.mark.slow
@@ -91,7 +102,7 @@ def test_a_browser_shows_experiments_side_by_side(tmp_path: Path, width: int) ->
     sides = [read_experiment_or_table(PUBLISHED), experiment()]
     write_page(page_of_experiments(sides), page)
 
-    dom = in_browser(page, width, "cell=0.1.3")
+    dom = in_browser(page, width, f"{PLACE}&cell=0.1.3")
 
     assert dom.count('<table class="heat"') == 2
     assert "table-8.2-published has 28 cells that not all have" in dom

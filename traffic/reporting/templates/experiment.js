@@ -141,6 +141,7 @@ function writePlace() {
   const told = new URLSearchParams({ measure: measures[state.measure].name });
   for (const axis of ["columns", "rows", "groups", "along"]) if (state[axis] !== null) told.set(axis, factors[state[axis]].name);
   if (state.cell) told.set("cell", state.cell.map((level) => level ?? "").join("."));
+  if (state.seed) told.set("run", `${state.seed.e}.${state.seed.seed}`);
   history.replaceState(null, "", `#${told}`);
 }
 
@@ -158,7 +159,14 @@ function readPlace() {
   const isPlace = levels.every((text, f) => text === "" || factors[f]?.shown[+text]);
   if (told.has("cell") && levels.length === factors.length && isPlace) {
     state.cell = levels.map((text) => (text === "" ? null : +text));
+    readRun(told.get("run"));
   }
+}
+
+function readRun(text) {
+  const [e, seed] = (text ?? "").split(".").map(Number);
+  const [cell] = experiments[e] ? cellsAt(e, state.cell).filter((each) => each.command) : [];
+  if (text && cell) state.seed = { e, cell, seed };
 }
 
 function draw() {

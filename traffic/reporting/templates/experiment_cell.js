@@ -2,8 +2,8 @@ const MOST_CELLS = 8;
 
 function foundRow(e, cells) {
   const share = summed(cells);
-  const name = element("span", { class: "who" }, ...(isSeveral ? [markOf(series(e))] : []), isSeveral ? experiments[e].name : "");
-  if (!share[1]) return [name, element("b", {}, "–"), element("span", { class: "soft told" }, cells.length ? "nothing to count" : "no such cell"), element("span")];
+  const name = isSeveral ? [element("span", { class: "who" }, markOf(series(e)), experiments[e].name)] : [];
+  if (!share[1]) return [...name, element("b", {}, "–"), element("span", { class: "soft told" }, cells.length ? "nothing to count" : "no such cell"), element("span")];
   const [low, high] = wilson(share);
   const failed = cells.reduce((sum, cell) => sum + cell.failed, 0);
   const bar = element(
@@ -12,7 +12,7 @@ function foundRow(e, cells) {
     element("u", { style: `left:${(100 * share[0]) / share[1]}%` }),
   );
   const told = `${rangeText(share)} % · ${share[0]} of ${share[1]}${failed ? ` · ${failed} failed` : ""}`;
-  return [name, element("b", {}, `${percent(share[0] / share[1])} %`), bar, element("span", { class: "soft told" }, told)];
+  return [...name, element("b", {}, `${percent(share[0] / share[1])} %`), bar, element("span", { class: "soft told" }, told)];
 }
 
 const ownWords = (e, cell) =>
@@ -25,8 +25,9 @@ function seedChips(e, cell, seeds, n) {
   const chip = (seed) => {
     const isChosen = state.seed?.cell === cell && state.seed.seed === seed;
     const choose = () => {
-      state.seed = { e, cell, seed };
+      state.seed = isChosen ? null : { e, cell, seed };
       drawCell();
+      writePlace();
     };
     return element("button", { type: "button", "aria-pressed": isChosen ? "true" : "false", onclick: choose }, `${seed}`);
   };
@@ -59,9 +60,9 @@ function lookAt(e, cells) {
   const runs = known.reduce((sum, cell) => sum + cell.runs, 0);
   const who = isSeveral ? `${experiments[e].name}: ` : "";
   const { less } = measures[state.measure];
-  const of = less ? "have one" : "fall short";
+  const of = less ? (total === 1 ? "has one" : "have one") : total === 1 ? "falls short" : "fall short";
   const intro = total
-    ? `${who}${total} of ${runs} runs ${of}. Their seeds; choose one to see how it is done again:`
+    ? `${who}${total} of ${runs} runs ${of}. Their seeds; each is a button that tells how to do that run again:`
     : `${who}all ${runs} runs are as they should be. One to look at:`;
   const listed = (total ? missed : known.slice(0, 1)).slice(0, MOST_CELLS);
   const lines = listed.flatMap((cell) => {
@@ -85,7 +86,7 @@ function drawCell() {
   byId("cell-title").textContent = `${placeWords(state.cell)}: ${measures[state.measure].name}`;
   const found = experiments.map((_, e) => cellsAt(e, state.cell));
   byId("cell").replaceChildren(
-    element("div", { class: "found" }, ...found.flatMap((cells, e) => foundRow(e, cells))),
+    element("div", { class: `found${isSeveral ? "" : " single"}` }, ...found.flatMap((cells, e) => foundRow(e, cells))),
     ...found.flatMap((cells, e) => lookAt(e, cells)),
   );
 }

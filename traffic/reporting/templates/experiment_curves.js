@@ -40,13 +40,13 @@ function topOf(panels) {
   return [0.05, 0.1, 0.2, 0.5, 1].find((top) => top >= highest - 1e-9);
 }
 
-function curveParts({ style, name }, points, px, py) {
+function curveParts({ style, name }, points, n, { px, py }) {
   if (!points.length) return [];
   const xy = (value) => (p) => `${px(p.amount).toFixed(1)},${py(p[value]).toFixed(1)}`;
   const band = [...points.map(xy("low")), ...points.slice().reverse().map(xy("high"))].join(" ");
   const lone = points.length === 1 ? [svg("path", { d: `M${xy("low")(points[0])}L${xy("high")(points[0])}`, stroke: style.colour, "stroke-width": 2 })] : [];
   return [
-    svg("polygon", { points: band, fill: style.colour, opacity: 0.14 }),
+    svg("polygon", { points: band, fill: style.colour, opacity: n > 3 ? 0.08 : 0.14 }),
     svg("polyline", {
       points: points.map(xy("value")).join(" "), fill: "none", stroke: style.colour,
       "stroke-width": 2.2, "stroke-linejoin": "round", "stroke-dasharray": style.dash,
@@ -81,7 +81,7 @@ function ticksOf(x, px) {
 
 function panelDrawing({ title, lines }, x, top, width) {
   const height = Math.round(Math.min(360, Math.max(190, 0.55 * width)));
-  const [left, right, above, below] = [46, 12, 8, 40];
+  const [left, right, above, below] = [46, 22, 8, 40];
   const amounts = shownLevels(x).map((level) => factors[x].shown[level].amount);
   const [least, most] = [Math.min(...amounts), Math.max(...amounts)];
   const px = (amount) => (most === least ? (left + width - right) / 2 : left + ((amount - least) / (most - least)) * (width - left - right));
@@ -97,7 +97,7 @@ function panelDrawing({ title, lines }, x, top, width) {
     drawing.append(svg("text", { x: px(amount), y: height - below + 17, "text-anchor": "middle" }, number(amount)));
   }
   drawing.append(svg("text", { x: (left + width - right) / 2, y: height - 5, "text-anchor": "middle" }, factorName(x)));
-  for (const { curve, points } of lines) drawing.append(...curveParts(curve, points, px, py));
+  for (const { curve, points } of lines) drawing.append(...curveParts(curve, points, lines.length, { px, py }));
   return element("div", {}, ...(title ? [element("h3", {}, title)] : []), drawing);
 }
 

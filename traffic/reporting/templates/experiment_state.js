@@ -3,13 +3,14 @@ const { measures, experiments } = data;
 const isSeveral = experiments.length > 1;
 const ALL = -1;
 const MANY_LEVELS = 12;
-const N_RANGES = 8;
+const MOST_RANGES = 10;
+const MOST_LINES = 24;
 
 const words = (name) => name.replaceAll("_", " ");
 const number = (value) => `${+value.toPrecision(4)}`;
 const percent = (share) => {
   const value = 100 * share;
-  return value === 0 || value === 100 ? `${value}` : value.toFixed(value < 10 || value > 90 ? 1 : 0).replace(/\.0$/, "");
+  return value === 0 || value === 100 ? `${value}` : value.toFixed(value < 1 || value > 99 ? 1 : 0).replace(/\.0$/, "");
 };
 const Z = 1.959963984540054;
 const wilson = ([successes, trials]) => {
@@ -28,16 +29,20 @@ const rangeText = (share) => {
   return `${Math.floor(100 * low + 1e-9)}–${Math.ceil(100 * high - 1e-9)}`;
 };
 
-/* Numbers of many levels, such as drawn ones, are put together in ranges. */
+/* Numbers of many levels, such as drawn ones, are put together in ranges with round ends. */
 function inRanges(factor) {
   const { amounts } = factor;
-  const [least, most] = [Math.min(...amounts), Math.max(...amounts)];
-  const width = (most - least) / N_RANGES;
-  const rangeOf = (amount) => Math.min(N_RANGES - 1, Math.floor((amount - least) / width));
+  const most = Math.max(...amounts);
+  const atLeast = (most - Math.min(...amounts)) / MOST_RANGES;
+  const unit = 10 ** Math.floor(Math.log10(atLeast));
+  const width = [1, 2, 2.5, 5, 10].map((n) => n * unit).find((each) => each >= atLeast * (1 - 1e-9));
+  const least = Math.floor(Math.min(...amounts) / width + 1e-9) * width;
+  const n = Math.max(1, Math.ceil((most - least) / width - 1e-9));
+  const rangeOf = (amount) => Math.min(n - 1, Math.floor((amount - least) / width + 1e-9));
   return {
     ...factor,
     of: amounts.map(rangeOf),
-    shown: [...Array(N_RANGES).keys()].map((i) => ({
+    shown: [...Array(n).keys()].map((i) => ({
       text: `${number(least + i * width)}–${number(least + (i + 1) * width)}`,
       amount: least + (i + 0.5) * width,
     })),
@@ -53,8 +58,9 @@ const isShort = (name) => data.factors.filter((each) => each.name.split(".").pop
 const shortName = (name) => words(isShort(name) ? name.split(".").pop() : name);
 const factorName = (f) => shortName(factors[f].name) + (factors[f].unit ? `, ${factors[f].unit}` : "");
 const levelText = (f, level) => factors[f].shown[level].text;
+const isOnlyUnit = (f) => several.every((other) => other === f || factors[other].unit !== factors[f].unit);
 const levelWords = (f, level) =>
-  factors[f].unit ? `${levelText(f, level)} ${factors[f].unit}` : `${shortName(factors[f].name)} ${levelText(f, level)}`;
+  factors[f].unit && isOnlyUnit(f) ? `${levelText(f, level)} ${factors[f].unit}` : `${shortName(factors[f].name)} ${levelText(f, level)}`;
 const isNumeric = (f) => factors[f].amounts !== null;
 
 for (const experiment of experiments) {
@@ -71,15 +77,24 @@ const commonLevels = (f) => {
   return new Set(common.length ? common : factors[f].shown.keys());
 };
 
-/* Columns have the most levels; groups and rows are in the order of the design. */
+/* What matters most goes along the columns; of two others, groups have the fewer levels. */
 const kept = factors.map((_, f) => commonLevels(f));
-const nLevels = (f) => Math.max(kept[f].size, 1.5);
-const byLevels = several.slice().sort((a, b) => isNumeric(b) - isNumeric(a) || nLevels(b) - nLevels(a));
-const isGrouped = byLevels.length === 3 || (isSeveral && byLevels.length > 3);
-const [rows, groups] = isGrouped ? byLevels.slice(1, 3).sort((a, b) => b - a) : [byLevels[1] ?? null, null];
+const effect = (f) => Math.max(...experiments.map(({ cells }) => {
+  const shares = [...kept[f]].map((level) => {
+    const some = cells.filter((cell) => cell.at[f] === level).map((cell) => cell.shares[0]);
+    const [s, t] = some.reduce((sum, [a, b]) => [sum[0] + a, sum[1] + b], [0, 0]);
+    return t ? s / t : null;
+  }).filter((share) => share !== null);
+  return Math.max(...shares, 0) - Math.min(...shares, 1);
+}));
+const effects = factors.map((_, f) => effect(f));
+const byEffect = several.slice().sort((a, b) => isNumeric(b) - isNumeric(a) || effects[b] - effects[a] || a - b);
+const others = byEffect.slice(1, 3).sort((a, b) => kept[b].size - kept[a].size || b - a);
+const isGrouped = others.length === 2 && kept[others[0]].size * kept[others[1]].size <= MOST_LINES;
+const [rows, groups] = isGrouped ? others : [byEffect[1] ?? null, null];
 const state = {
   measure: 0,
-  columns: byLevels[0] ?? null,
+  columns: byEffect[0] ?? null,
   rows,
   groups,
   along: null,

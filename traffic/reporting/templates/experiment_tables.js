@@ -55,11 +55,17 @@ function heatRows(e) {
   );
 }
 
+/* In rem: as wide as the longest level, within bounds. */
+const cornerWidth = (f) => {
+  const longest = Math.max(...axisLevels(f).map((level) => levelText(f, level).length));
+  return Math.min(11, Math.max(3, 0.48 * longest + 0.7));
+};
+
 function drawTables() {
   const n = axisLevels(state.columns).length;
-  const nCorners = [state.groups, state.rows].filter((f) => f !== null).length;
-  const needed = 3.4 * nCorners + 2.5 * n;
-  const widths = [...Array(nCorners).fill("3.4rem"), ...Array(n).fill("auto")];
+  const corners = [state.groups, state.rows].filter((f) => f !== null);
+  const needed = corners.reduce((sum, f) => sum + cornerWidth(f), 0) + 2.5 * n;
+  const widths = [...corners.map((f) => `${cornerWidth(f)}rem`), ...Array(n).fill("auto")];
   byId("tables").style.setProperty("--needed", `${isSeveral ? needed : 30}rem`);
   byId("tables").replaceChildren(
     ...experiments.map((experiment, e) =>
