@@ -17,7 +17,7 @@ function filter(f) {
   };
   const chips = factors[f].shown.map(({ text }, level) => {
     const who = experiments.filter((experiment) => levelsOf(experiment, f).has(level)).map((each) => each.name);
-    const note = who.length < experiments.length ? `only ${who.join(", ")}` : null;
+    const note = notOfAll(f).includes(level) ? `only ${who.join(", ")}` : null;
     return element(
       "button",
       { type: "button", title: note, "aria-pressed": kept.has(level) ? "true" : "false", onclick: () => toggle(level) },

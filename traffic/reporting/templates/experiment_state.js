@@ -70,6 +70,8 @@ for (const experiment of experiments) {
 }
 const several = factors.map((_, f) => f).filter((f) => factors[f].shown.length > 1);
 const levelsOf = (experiment, f) => new Set(experiment.cells.map((cell) => cell.at[f]));
+const notOfAll = (f) =>
+  [...factors[f].shown.keys()].filter((level) => !experiments.every((experiment) => levelsOf(experiment, f).has(level)));
 /* At first only what all experiments have is shown. */
 const commonLevels = (f) => {
   const found = experiments.map((experiment) => levelsOf(experiment, f));

@@ -97,6 +97,7 @@ function aboutTables() {
     held.length ? `At ${held.map((f) => levelWords(f, shownLevels(f)[0])).join(", ")}.` : "",
     open.length ? `Added up over ${open.map((f) => shortName(factors[f].name)).join(", ")}.` : "",
     `All that is chosen: ${totals.join("; ")}.`,
+    isSeveral && several.some((f) => notOfAll(f).length) ? "A level with a star is not in all experiments." : "",
   ].filter((text) => text).join(" ");
 }
 
