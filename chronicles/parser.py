@@ -50,6 +50,10 @@ COMMENT: /(?:#|\/\/)[^\n]*/
 %ignore /\s+/
 """
 
+_NO_NAME = r"(?!\s*(?:in\b|[<>=+\-(\[\u2264\u2265\u2212]))"
+_MAY_BE_NAMES = ("parameter", "time")
+"""Words that begin a declaration; behind a domain what follows tells whether they are names."""
+
 _IN_ASCII = {"\u2212": "-", "\u2264": "<=", "\u2265": ">=", "\u2260": "!="}
 _MOST_FAULTS = 20
 _DEEPEST = 200
@@ -211,7 +215,7 @@ def _is_token(child: object) -> bool:
 def _grammar() -> Lark:
     text = Path(__file__).with_name("grammar.lark").read_text(encoding="utf-8")
     keywords = sorted(set(_KEYWORD.findall(text)))
-    terminals = "".join(rf"_{word.upper()}: /{word}(?!\w)/" + "\n" for word in keywords)
+    terminals = "".join(map(_keyword, keywords))
     return Lark(
         _KEYWORD.sub(lambda match: f"_{match[1].upper()}", text) + _TERMINALS + terminals,
         parser="lalr",
@@ -220,6 +224,13 @@ def _grammar() -> Lark:
         maybe_placeholders=True,
         lexer_callbacks=dict.fromkeys(("MINUS", "ORDER", "EQUALITY"), _in_ascii),
     )
+
+
+def _keyword(word: str) -> str:
+    """Return the terminal of a word."""
+    if word in _MAY_BE_NAMES:
+        return rf"_{word.upper()}.2: /{word}(?!\w){_NO_NAME}/" + "\n"
+    return rf"_{word.upper()}: /{word}(?!\w)/" + "\n"
 
 
 def _in_ascii(token: Token) -> Token:

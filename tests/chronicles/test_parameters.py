@@ -308,6 +308,10 @@ def test_what_a_chronicle_depends_on_is_known() -> None:
 
 def test_parameter_is_no_reserved_word() -> None:
     """It is a name wherever a name can stand."""
-    text = "message parameter\nchronicle parameter { event(parameter, parameter) }"
+    text = """message parameter domain D = {a} constraint time(a) { a in [0, 5] }
+    chronicle parameter[?x] {
+        event(parameter[?x], parameter) event(parameter[?x], u)
+        variable ?x in D parameter in [0, 5] ?x in D time(parameter) ?x in D parameter < u
+    }"""
 
     assert parse_chronicles(text).chronicles[0].name == "parameter"

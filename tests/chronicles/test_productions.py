@@ -10,6 +10,7 @@ from dyknow.errors import SpecificationErrors
 
 CONTEXT = """
 domain Car = {car1, car2}
+parameter long = 9 parameter count = 3
 attribute p[?x] message m[?x] message q
 constraint two(a, b) { a <= b }
 constraint three(a, b, c) { a <= b <= c }
@@ -27,6 +28,11 @@ def statements(text: str) -> str:
 
 DECLARATIONS = {
     "ChronicleFile": ["", "domain A = {a} attribute p message m chronicle c { event(m, t) }"],
+    "Parameter declaration (ours)": [
+        "parameter a = 5", "parameter a = 1.5 s", "parameter a = -1 min", "parameter a = +3",
+        "parameter a = −3 parameter b = 0", "parameter parameter = 3",
+        "domain A = {a} parameter b = 5", "domain A = {a} domain B = ~A parameter b = 5",
+    ],
     "DomainDefinition": ["domain A = {}"],
     "Domain": [
         "domain A = {a} | {b} \\ {c} | {d}", "domain A = {a} + {b} - {c}", "domain A = {a} − {b}",
@@ -42,7 +48,7 @@ DECLARATIONS = {
     ],
     "TimeConstraintGraph": [
         "time constraint k(a, b) { a <= b }", "constraint k(a, b) { a <= b; b <= a + 5 }",
-        "time constraint k { }", "time constraint k() { }",
+        "time constraint k { }", "time constraint k() { }", "domain A = {a} time constraint k { }",
         "constraint k[?a, ?b](a, b) { ?a != ?b; a <= b }",
     ],
     "Attribute": ["attribute a", "attribute a[?x]", "attribute a[?x] { ?value in {v} ?x != b }"],
@@ -79,19 +85,23 @@ STATEMENTS = {
         "t3 >= t2 = t1",
         "t1 ≤ t2; t3 ≥ t2", "t1 < t2 + 5 <= t3", "9 <= t2 - t1 <= 30",
     ],
-    "TimeValue": ["t2 - t1 < +5", "t2 - t1 > -5", "t2 − t1 < 5", "t2 - t1 in [-5, +5]"],
+    "TimeValue": [
+        "t2 - t1 < +5", "t2 - t1 > -5", "t2 − t1 < 5", "t2 - t1 in [-5, +5]",
+        "t2 - t1 <= long", "t2 - long <= t1", "-long + 5 <= t2 - t1", "t1 < long + 5",
+    ],
     "TimePoint": [
         "event(q, t1 + 5)", "event(q, t1 - 5)", "t1 - [0, 5] + [1, 2] - 3 < t2",
-        "event(q, t1 + [0, 5])", "event(q, t1 - [0, 5])",
+        "event(q, t1 - long + 2)", "event(q, t1 + [0, 5])", "event(q, t1 - [0, 5])",
         "t1 < t2 + [0, 5]", "t1 - 5 < t2", "noevent(q, (t1 + [2, 2], t2 - [2, 2] + 1))",
     ],
     "TimeInterval": [
         "t2 - t1 in [0, 5] + [1, 2] - [3, 4]", "t2 - t1 in [-12, 100] + 22",
         "t2 - t1 in [1300, oo[ & [0, 10000]", "t2 - t1 in [10, 122] | [50, 100]",
+        "t2 - t1 in [0, 5] + long - [3, 4]",
     ],
     "AtomicTimeInterval": [
         "t2 - t1 in [0, 5]", "t2 - t1 in ]-oo, 5]", "t2 - t1 in [0, oo[", "t2 - t1 in ]-oo, oo[",
-        "t2 - t1 in -[-5, 0]", "t2 - t1 in ]0, 5[",
+        "t2 - t1 in -[-5, 0]", "t2 - t1 in ]0, 5[", "t2 - t1 in [-long, long[",
     ],
     "ChronicleStatement": [
         "chronicle sub[?x]", "chronicle sub[?x]()", "chronicle sub[?](t1)",
@@ -102,7 +112,9 @@ STATEMENTS = {
     ],
     "Predicate": [
         "event(q, t4)", "noevent(m[?x], (t1, t2 + 1))", "occurs(0, 3, m[*z], (t1, t2))",
-        "occurs(3, oo, m[?x], (start, end))", "event(q, end)", "event(q, t1) ; event(m[?x], t1)",
+        "occurs(3, oo, m[?x], (start, end))", "occurs(count, oo, m[?x], (t1, t1 + long))",
+        "occurs(0, count, m[?x], (t1 + [2, 2] - long, t2))",
+        "event(q, end)", "event(q, t1) ; event(m[?x], t1)",
     ],
     "Type": ["event(p[?x]:(?, true), t4)", "event(p[?x]:(?y, ?z), t4)", "event(q, t4)"],
 }  # fmt: skip

@@ -143,6 +143,65 @@ def test_a_file_that_has_changed_is_read_again(tmp_path):
     assert "turn_back" in names[1]
 
 
+SIGNALS = """
+parameter patience = 2 s
+source events link_turns
+strmgen events = link_turns
+compunit recognitions Chronicles(events, ...)
+strmgen signals = Chronicles(events, file = signals, max_delay = 500{settings})
+stream signals = signals
+"""
+
+
+def test_parameters_of_a_chronicle_file_are_settings():
+    """As a time, a number of milliseconds, a text for what is negative, or a parameter of KPL."""
+    text = 'red_for = patience, red_at_most = 9000, passing = "3 s"'
+    system = system_of(SIGNALS.format(settings=f", {text}"))
+    said = {each["label"]: each["process"] for each in system.network.description["generators"]}
+
+    assert system.chronicles == ("red_light",)
+    assert said["signals"].endswith('red_for = 2000 ms, red_at_most = 9000, passing = "3 s")')
+
+
+@pytest.mark.parametrize(
+    ("settings", "place", "message"),
+    [
+        ("red_fr = 2", "x.kpl:6:", "has no parameter 'red_fr'; did you mean 'red_for'? (it has "),
+        ("red_for = soon", "x.kpl:6:", "must be of sort 'time or number', found 'name'"),
+        ("red_for = true", "x.kpl:6:", "must be of sort 'time or number', found 'truth value'"),
+        ("red_for = [1]", "x.kpl:6:", "must be of sort 'time or number', found 'list'"),
+        ('red_for = "soon"', "x.kpl:6:", "expected a duration such as"),
+        ("red_for = 1 us", "x.kpl:6:", "is finer than a millisecond"),
+        ("red_for = 1.5", "x.kpl:6:", "is finer than a millisecond"),
+        ("red_for = 20 min", "/signals.chronicle:", "can never be recognised"),
+    ],
+)
+def test_unfit_parameters_of_a_chronicle_file_have_a_place(settings, place, message):
+    """In the specification, or in the chronicle file if it is one of the constraints there."""
+    with pytest.raises(SpecificationErrors) as caught:
+        system_of(SIGNALS.format(settings=f", {settings}"))
+
+    (fault,) = caught.value.exceptions
+    assert message in str(fault)
+    assert place in fault.report()
+
+
+def test_a_parameter_is_not_called_like_a_setting_of_the_unit(tmp_path):
+    """The fault is one of the chronicle file, when this unit reads it."""
+    path = tmp_path / "own.chronicle"
+    path.write_text(
+        "parameter max_delay = 3\nmessage m\n"
+        "chronicle c { event(m, t) noevent(m, (t + 1, t + max_delay)) }\n"
+    )
+    text = SIGNALS.replace("file = signals", f'file = "{path}"').format(settings="")
+    with pytest.raises(SpecificationErrors) as caught:
+        system_of(text)
+
+    (fault,) = caught.value.exceptions
+    assert "has a setting 'max_delay' of its own" in str(fault)
+    assert "own.chronicle:1:1" in fault.report()
+
+
 def test_one_seed_gives_the_same_chance_again():
     """In traffic and in sensors, and each its own."""
     (traffic, sensors), (again, _) = generators_of(3), generators_of(3)

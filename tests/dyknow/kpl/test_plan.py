@@ -5,9 +5,10 @@ import pytest
 from dyknow.errors import SpecificationErrors
 from dyknow.kpl.parser import parse_specification
 from dyknow.kpl.plan import Implementations, build_network
+from dyknow.kpl.syntax import Number, Setting, Time
 from dyknow.mtl.printer import text_from_formula
 from dyknow.streams.sample import Sample
-from dyknow.time import Duration
+from dyknow.time import Duration, seconds
 from tests.support.streams import GivenSource, ms, text
 
 TEXT = """
@@ -203,6 +204,26 @@ def test_a_number_is_milliseconds_where_the_unit_wants_a_time():
     build_network(parse_specification(f"{text} stream b = b"), implementations)
 
     assert given == [(ms(500), 3)]
+
+
+def test_a_unit_may_take_settings_as_they_are_written():
+    """With their places: those that it does not name itself, whatever they are called."""
+    found = {}
+
+    def make(*, by: float, **others: Setting):
+        found.update(others, by=by)
+        return Each("".join)
+
+    text = TEXT.replace("by = 2", "by = 2, wait = 3 s, others = 4")
+    sources = Recorder().implementations.sources
+    build_network(
+        parse_specification(text), Implementations(sources, {"Scale": make}), outputs=["scaled"]
+    )
+
+    assert found["by"] == 2.0
+    assert found["wait"].value == Time(seconds(3))
+    assert found["others"].value == Number(4)
+    assert found["wait"].span.place.startswith("<specification>:")
 
 
 def test_an_output_must_be_declared():

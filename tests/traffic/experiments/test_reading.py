@@ -51,6 +51,13 @@ def test_the_bundled_designs_are_possible() -> None:
         ("[0, 4]", "[]", ":8:1: expected at least one item"),
         ("[0, 4]", "{ from = 0, to = 4 }", ":8:1: a range of levels needs the table 'sampling'"),
         (".gap", ".gp", ":9:1: no setting of 'CarRelations' called 'gp'"),
+        ('"car_relations.gap" = [1', '"overtakes.longst" = ["3 s"', ":9:1: '/"),
+        ('car_relations.gap" = [1, 2]', 'overtakes.longest" = [1, "x y"]', ":9:1: expected a dur"),
+        (
+            'car_relations.gap" = [1, 2]',
+            'overtakes.longest" = ["-2 s", 2]',
+            ":9:1: chronicle 'ove",
+        ),
         ("[1, 2]", '[1, "x"]', ":9:1: the setting 'gap' must be of sort 'number'"),
         ("overtake.recall", "overtak.recall", ":3:1: no run scores 'overtak'; did you mean"),
         (
@@ -71,6 +78,27 @@ def test_every_fault_has_its_place(tmp_path: Path, old: str, new: str, said: str
 
     assert any(said.lower() in fault.lower() for fault in found), found
     assert all(fault.startswith("d.toml:") for fault in found)
+
+
+def test_a_parameter_of_chronicles_may_be_a_factor(tmp_path: Path) -> None:
+    """Its levels are times, numbers of milliseconds, or a range that is drawn from."""
+    text = GOOD.replace('"car_relations.gap" = [1, 2]', '"overtakes.longest" = ["30 s", 60000]')
+    drawn = GOOD.replace(
+        '"car_relations.gap" = [1, 2]',
+        '"overtakes.longest" = { from = 10000, to = 60000, step = 1000 }\n'
+        "[sampling]\ncells = 3\nseed = 1",
+    )
+    cells = []
+    for given in (text, drawn):
+        path = tmp_path / "d.toml"
+        path.write_text(given, encoding="utf-8")
+        design = read_design(path)
+        check_design(path, design)
+        cells.append([cell["overtakes.longest"] for cell in design.combinations()])
+
+    assert cells[0] == ["30 s", 60000] * 2
+    assert len(cells[1]) == 3
+    assert all(10_000 <= float(level) <= 60_000 for level in cells[1])
 
 
 def test_a_design_is_found_by_name_or_path() -> None:

@@ -5,6 +5,7 @@ import shutil
 
 import pytest
 
+from dyknow.time import SECOND
 from traffic.errors import ExplanationError, ResultError
 from traffic.explaining.kept import open_kept_run
 from traffic.explaining.walking import Walker
@@ -85,3 +86,18 @@ def test_a_changed_chronicle_is_noticed(folder):
 
     with pytest.raises((ExplanationError, Exception), match="chronicle"):
         Walker(open_kept_run(folder)).explanation(1)
+
+
+def test_chronicles_say_what_they_said_in_the_run(folder):
+    """With the values that the specification gave to the parameters of their files."""
+    path = folder / "explanations" / "description.json"
+    text = path.read_text()
+    assert text.count("file = turns, ") == 1
+    path.write_text(text.replace("file = turns, ", "file = turns, in_crossing = 100 s, "))
+    walker = Walker(open_kept_run(folder))
+    found = [walker.explanation(number).recognition for number in (1, 2)]
+    chronicles = {each.chronicle.name: each for each in walker.run.chronicles}
+
+    assert chronicles["turn_left"].stream == "turns"
+    assert chronicles["overtake"].file.parameters[0].value.duration == 60 * SECOND
+    assert all("t2 - t1 in [0, 100000]" in [c.text for c in each.constraints] for each in found)
