@@ -106,7 +106,7 @@ class Values:
         self, source: SourceText, declared: Mapping[str, Amount], given: Mapping[str, Amount]
     ) -> None:
         self._source = source
-        self._amounts = {**declared, **given}
+        self._amounts = {name: given.get(name, amount) for name, amount in declared.items()}
         self._given = given
         self._places: list[int] = []
         self._names: list[str] = []
@@ -114,14 +114,7 @@ class Values:
 
     def length(self, name: str, start: int) -> Duration:
         """Return the length that a name stands for at an offset of the text."""
-        amount = self._used(name, start)
-        if amount is None:
-            return MILLISECOND
-        length = _length(amount)
-        if abs(length) > LONGEST:
-            message = f"the parameter '{name}' is longer than nine years"
-            self.faults.append(ChronicleError(message, self._blamed(name, start)))
-        return length
+        return MILLISECOND if self._used(name, start) is None else self._length(name, start)
 
     def count(self, name: str, start: int) -> int:
         """Return the number of events that a name stands for at an offset of the text."""
@@ -168,13 +161,23 @@ class Values:
         match operand:
             case Instant(span, name, offset) if name in self._amounts:
                 names.append(name)
-                return Length(span, Duration(_length(self._amounts[name]) + offset))
+                return Length(span, Duration(self._length(name, span.start) + offset))
             case Difference(span, later, earlier, offset) if earlier in self._amounts:
                 names.append(earlier)
-                rest = Duration(offset - _length(self._amounts[earlier]))
+                rest = Duration(offset - self._length(earlier, span.start))
                 return self._operand(Instant(span, later, rest), names)
             case _:
                 return operand
+
+    def _length(self, name: str, start: int) -> Duration:
+        """Return the length that a parameter stands for, at most a longest one."""
+        amount = self._amounts[name]
+        length = amount.duration if isinstance(amount, Length) else amount.value * MILLISECOND
+        if abs(length) <= LONGEST:
+            return Duration(length)
+        message = f"the parameter '{name}' is longer than nine years"
+        self.faults.append(ChronicleError(message, self._blamed(name, start)))
+        return MILLISECOND
 
     def _used(self, name: str, start: int) -> Amount | None:
         amount = self._amounts.get(name)
@@ -246,9 +249,3 @@ def _instants(declaration: Chronicle | ConstraintDeclaration) -> Iterator[tuple[
     for statement in declaration.plain:
         names = statement.names if isinstance(statement, InstantDeclaration) else ()
         yield from ((name, statement.span) for name in (*names, *instants_of(statement)))
-
-
-def _length(amount: Amount) -> Duration:
-    if isinstance(amount, Length):
-        return amount.duration
-    return Duration(amount.value * MILLISECOND)

@@ -1,6 +1,7 @@
 """Parameters of chronicle files: what they stand for, and what is said of wrong ones."""
 
 import re
+from pathlib import Path
 
 import pytest
 from hypothesis import HealthCheck, given, settings
@@ -213,6 +214,7 @@ def test_a_value_may_have_a_place() -> None:
         ({"longest": float("inf")}, "found 'inf'"),
         ({"longest": 1e30}, "is longer than nine years"),
         ({"longest": 10**17}, "the parameter 'longest' is longer than nine years"),
+        ({"early": 10**17}, "the parameter 'early' is longer than nine years"),
         ({"longest": "999999 h"}, "is longer than nine years"),
         ({"longest": "-999999 h"}, "is longer than nine years"),
         ({"longest": "1 us"}, "is finer than a millisecond"),
@@ -224,7 +226,7 @@ def test_unfit_values_are_told(values: dict[str, Given], message: str) -> None:
     """What was expected, what was found, and the nearest name."""
     with pytest.raises(SpecificationErrors) as raised:
         parse_chronicles(
-            file_with("t2 <= t1 + longest occurs(least, oo, q, (t1, t2))"), "f", values
+            file_with("t2 <= t1 + longest occurs(least, oo, q, (t1, t2)) early < t1"), "f", values
         )
 
     assert message in str(raised.value.exceptions[0])
@@ -315,3 +317,14 @@ def test_parameter_is_no_reserved_word() -> None:
     }"""
 
     assert parse_chronicles(text).chronicles[0].name == "parameter"
+
+
+def test_the_example_of_the_page_has_no_faults() -> None:
+    """And uses all that it declares."""
+    page = Path("docs/chronicles.md").read_text(encoding="utf-8")
+    (example,) = re.findall(r"^```chronicle\n(.*?)^```$", page, re.DOTALL | re.MULTILINE)
+    file = parse_chronicles(example)
+
+    assert faults(file) == []
+    assert warnings(file) == []
+    assert [each.name for each in file.parameters] == ["longest", "early", "times"]
