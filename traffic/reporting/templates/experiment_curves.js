@@ -37,7 +37,7 @@ function pointsOf(curve, x, panel) {
 function topOf(panels) {
   if (!measures[state.measure].less) return 1;
   const highest = Math.max(0.05, ...panels.flatMap(({ lines }) => lines.flatMap(({ points }) => points.map((p) => p.high))));
-  return [0.05, 0.1, 0.2, 0.5, 1].find((top) => top >= highest - 1e-9);
+  return [0.05, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.8, 1].find((top) => top >= highest - 1e-9);
 }
 
 function curveParts({ style, name }, points, n, { px, py }) {

@@ -64,7 +64,7 @@ const cornerWidth = (f) => {
 function drawTables() {
   const n = axisLevels(state.columns).length;
   const corners = [state.groups, state.rows].filter((f) => f !== null);
-  const needed = corners.reduce((sum, f) => sum + cornerWidth(f), 0) + 2.5 * n;
+  const needed = corners.reduce((sum, f) => sum + cornerWidth(f), 0) + 2.85 * n;
   const widths = [...corners.map((f) => `${cornerWidth(f)}rem`), ...Array(n).fill("auto")];
   byId("tables").style.setProperty("--needed", `${isSeveral ? needed : 30}rem`);
   byId("tables").replaceChildren(
@@ -74,7 +74,7 @@ function drawTables() {
         ...(isSeveral ? [element("figcaption", {}, markOf(series(e)), experiment.name)] : []),
         element(
           "div", { class: "scroll" },
-          element("table", { class: "heat", style: `min-width:${0.8 * needed}rem` }, ...widths.map((width) => element("col", { style: `width:${width}` })), element("thead", {}, ...heatHead()), element("tbody", {}, ...heatRows(e))),
+          element("table", { class: "heat", style: `min-width:${0.75 * needed}rem` }, ...widths.map((width) => element("col", { style: `width:${width}` })), element("thead", {}, ...heatHead()), element("tbody", {}, ...heatRows(e))),
         ),
       ),
     ),
