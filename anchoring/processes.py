@@ -12,6 +12,10 @@ is followed by its maintain condition. What the sources leave open is settled as
   link; see `anchoring.candidates.best_pairs`.
 - A lower object that is itself only predicted (its column `observed` is false) is as good as
   vanished, unless the unit trusts predictions.
+- A lower object that vanished and is observed again, under its own name, takes up its link at
+  once if the upper object is there still and without a link: nothing has refuted it.
+- An upper object is not given up before it has been looked for in a few states, however seldom
+  there are any.
 """
 
 from collections.abc import Iterable
@@ -34,6 +38,12 @@ __all__ = ["LinkProcess"]
 
 _LINKED = -1
 """As `since` of an upper object: it is linked."""
+
+_NO_ONE = -1
+"""As `lower` of an upper object: no lower object may take up its link."""
+
+_FEWEST_STATES = 5
+"""In so many states an unanchored upper object is looked for at least."""
 
 
 class LinkProcess(Reactive):
@@ -79,6 +89,7 @@ class LinkProcess(Reactive):
             self._uppers.table = self._unit.create(_NOBODY, lower.select(_NOBODY), now)
         observed = lower.columns.get("observed", np.ones(len(lower), dtype=np.bool_))
         self._drop_vanished(lower, observed, now)
+        self._resume(lower, observed, now)
         self._predict(np.flatnonzero(self._uppers.since != _LINKED), now)
         broken = self._break_links(lower, now)
         self._begin_waiting(lower.ids[observed], broken)
@@ -97,6 +108,16 @@ class LinkProcess(Reactive):
         self._standing.keep(there)
         self._waiting.keep(np.isin(self._waiting.ids, lower.ids[observed]))
 
+    def _resume(self, lower: Table, observed: Mask, now: TimePoint) -> None:
+        """Make the links again whose lower objects had vanished and are back."""
+        uppers = self._uppers
+        free = np.flatnonzero((uppers.since != _LINKED) & (uppers.lower != _NO_ONE))
+        at = positions_of(uppers.lower[free], lower.ids)
+        back = at >= 0
+        back[back] = observed[at[back]]
+        back &= ~np.isin(uppers.lower[free], self._standing.lower)
+        self._link(take(lower, at[back]), uppers.table.ids[free[back]], now)
+
     def _predict(self, rows: Rows, now: TimePoint) -> None:
         if len(rows):
             table = self._uppers.table
@@ -113,6 +134,7 @@ class LinkProcess(Reactive):
         violated = standing.monitor.step(now, truth) < 0
         broken = standing.lower[violated]
         self._unlink(standing.upper[violated], self._step + 1, now, LinkEnd.VIOLATED)
+        self._uppers.lower[on[violated]] = _NO_ONE
         standing.keep(~violated)
         self._predict(on[violated], now)
         return broken
@@ -156,9 +178,12 @@ class LinkProcess(Reactive):
 
     def _link(self, lower: Table, upper: Ids, now: TimePoint) -> None:
         self._standing.add(lower.ids, upper)
-        self._uppers.since[positions_of(upper, self._uppers.table.ids)] = _LINKED
+        uppers = self._uppers
+        rows = positions_of(upper, uppers.table.ids)
+        uppers.lower[np.isin(uppers.lower, lower.ids)] = _NO_ONE
+        uppers.lower[rows], uppers.since[rows] = lower.ids, _LINKED
         for from_id, to_id in zip(lower.ids.tolist(), upper.tolist(), strict=True):
-            self.history.make(self._uppers.table.symbol(to_id), lower.symbol(from_id), now)
+            self.history.make(uppers.table.symbol(to_id), lower.symbol(from_id), now)
 
     def _compute(self, lower: Table, observed: Mask, now: TimePoint) -> None:
         """Compute the states of all linked upper objects."""
@@ -169,12 +194,15 @@ class LinkProcess(Reactive):
         if len(on):
             states = self._unit.update(take(uppers.table, on), take(lower, at), now)
             uppers.table = with_rows(uppers.table, on, states)
-        uppers.anchored_at[on[observed[at]]] = now
+        anchored = on[observed[at]]
+        uppers.anchored_at[anchored], uppers.anchored_in[anchored] = now, self._step
 
     def _remove_unanchored(self, now: TimePoint) -> None:
         """Give up the upper objects that no percept has fed for too long."""
         uppers = self._uppers
-        kept = now - uppers.anchored_at < self._remove_after
+        kept = (now - uppers.anchored_at < self._remove_after) | (
+            self._step - uppers.anchored_in < _FEWEST_STATES
+        )
         if kept.all():
             return
         linked = uppers.since == _LINKED
@@ -237,23 +265,30 @@ class _Uppers:
     Attributes:
         table: Their states.
         since: shape (n,), the number of the state since which each is unlinked, or `_LINKED`.
+        lower: shape (n,), ids of the lower objects that each is or was linked to, or `_NO_ONE`.
         anchored_at: shape (n,), when each was last linked to an observed object.
+        anchored_in: shape (n,), the number of the state of that moment.
     """
 
     def __init__(self, table: Table) -> None:
         self.table = table
         self.since: Ids = _NOBODY
+        self.lower: Ids = _NOBODY
         self.anchored_at: Ids = _NOBODY
+        self.anchored_in: Ids = _NOBODY
 
     def add(self, table: Table) -> None:
         self.table = concatenate([self.table, table])
         nothing = np.full(len(table), _LINKED, dtype=np.int64)
         self.since = np.concatenate((self.since, nothing))
+        self.lower = np.concatenate((self.lower, np.full(len(table), _NO_ONE, dtype=np.int64)))
         self.anchored_at = np.concatenate((self.anchored_at, nothing))
+        self.anchored_in = np.concatenate((self.anchored_in, nothing))
 
     def keep(self, mask: Mask) -> None:
         self.table = self.table.select(mask)
-        self.since, self.anchored_at = self.since[mask], self.anchored_at[mask]
+        self.since, self.lower = self.since[mask], self.lower[mask]
+        self.anchored_at, self.anchored_in = self.anchored_at[mask], self.anchored_in[mask]
 
 
 _NOBODY: Ids = np.empty(0, dtype=np.int64)

@@ -15,7 +15,7 @@ from dyknow.time import SECOND, Duration, TimePoint, milliseconds
 __all__ = ["WorldObject"]
 
 _OWN_COLUMNS = frozenset({"position", "velocity", "covariance", "observed_at"})
-_FILTER_COLUMNS = frozenset({"filter_mean", "filter_covariance", "filtered_at"})
+_FILTER_COLUMNS = frozenset({"filter_mean", "filter_covariance", "filtered_at", "percept"})
 
 
 _RESTART_AFTER = milliseconds(300)
@@ -31,8 +31,8 @@ class WorldObject:
         acceleration_density: How much objects accelerate: spectral density, m²/s³.
         velocity_deviation: How far the first velocity of a percept may be wrong, m/s.
         averaging: Share of a new percept in the averages.
-        restart_after: An object that was not there for a while and is found again after a gap as
-            long as this starts anew, because it may in truth be another one with another velocity.
+        restart_after: After a gap as long as this an object that is linked to another percept
+            starts anew, because it may in truth be another one with another velocity.
     """
 
     sort = "world_object"
@@ -59,6 +59,7 @@ class WorldObject:
             "filter_mean": mean,
             "filter_covariance": covariance,
             "filtered_at": lower["observed_at"].astype(np.int64),
+            "percept": lower.ids,
         }
         return self._observed(Table(self.sort, ids, columns), lower, now)
 
@@ -85,7 +86,8 @@ class WorldObject:
         mean, covariance = update_in_plane(
             mean, covariance, lower["position"], lower["covariance"]
         )
-        anew = ~upper["observed"] & (elapsed * SECOND >= self._restart_after)
+        is_other = lower.ids != upper["percept"]
+        anew = is_other & (elapsed * SECOND >= self._restart_after)
         first_mean, first_covariance = self._begin(lower)
         mean = choose(anew, first_mean, mean)
         covariance = choose(anew, first_covariance, covariance)
@@ -93,6 +95,7 @@ class WorldObject:
             filter_mean=choose(fresh, mean, upper["filter_mean"]),
             filter_covariance=choose(fresh, covariance, upper["filter_covariance"]),
             filtered_at=np.where(fresh, observed_at, upper["filtered_at"]),
+            percept=lower.ids,
             **self._averages(upper, lower, fresh),
         )
         return self._observed(corrected, lower, now)

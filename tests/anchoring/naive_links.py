@@ -72,14 +72,18 @@ class NaiveLinks:
 
     def __init__(self, settings, gate, *, trusts_predictions=False) -> None:
         self.settings, self.gate, self.trusts = settings, gate, trusts_predictions
-        self.things = {}  # upper id -> position, calm, anchored at
+        self.things = {}  # upper id -> position, calm, anchored at, anchored in
+        self.former = {}  # lower id -> upper id of its link, if it may be taken up
+        self.number = 0
         self.link = {}  # lower id -> (upper id, maintain)
         self.waiting = {}  # lower id -> (establish, {upper id: reestablish})
         self.next_id = 1
 
     def step(self, now, seen) -> dict[int, int]:
         """Take in *seen*: id -> (position, loud, observed); return the links."""
+        self.number += 1
         usable = self._drop(seen)
+        self._resume(usable)
         for p in usable - set(self.waiting) - set(self.link):
             self.waiting[p] = (_Formula(self.settings.establish), {})
         self._update_candidates()
@@ -88,14 +92,25 @@ class NaiveLinks:
         for p, (o, _) in self.link.items():
             self.things[o][0] = seen[p][0]
             if seen[p][2]:
-                self.things[o][2] = now
+                self.things[o][2:] = now, self.number
         for p in broken:
             self.waiting[p] = (_Formula(self.settings.establish), {})
         self._update_candidates()
-        for o in [o for o, t in self.things.items() if now - t[2] >= self.settings.remove_after]:
+        for o in [o for o, t in self.things.items() if self._is_lost(t, now)]:
             del self.things[o]
             self.link = {p: link for p, link in self.link.items() if link[0] != o}
         return {p: o for p, (o, _) in self.link.items()}
+
+    def _is_lost(self, thing, now) -> bool:
+        return now - thing[2] >= self.settings.remove_after and self.number - thing[3] >= 5
+
+    def _resume(self, usable) -> None:
+        """Make the links again whose lower objects are back."""
+        linked = {o for o, _ in self.link.values()}
+        for p in usable - set(self.link):
+            o = self.former.get(p)
+            if o in self.things and o not in linked:
+                self.link[p] = (o, _Formula(self.settings.maintain))
 
     def _make_links(self, now, seen) -> None:
         established, reestablished = self._verdicts(now, seen)
@@ -103,7 +118,7 @@ class NaiveLinks:
             self._connect(p, o)
             established.discard(p)
         for p in sorted(established):
-            self.things[self.next_id] = [seen[p][0], not seen[p][1], now]
+            self.things[self.next_id] = [seen[p][0], not seen[p][1], now, self.number]
             self._connect(p, self.next_id)
             self.next_id += 1
 
@@ -127,12 +142,13 @@ class NaiveLinks:
 
     def _connect(self, p, o) -> None:
         self.waiting.pop(p)
+        self.former = {q: old for q, old in self.former.items() if old != o} | {p: o}
         self.link[p] = (o, _Formula(self.settings.maintain))
 
     def _features(self, p, o, seen):
         values = {"loud(from)": seen[p][1]}
         if o is not None:
-            position, calm, _ = self.things[o]
+            position, calm, *_ = self.things[o]
             values["calm(to)"] = calm
             values["xydist(from, to)"] = float(np.hypot(*(np.array(seen[p][0]) - position)))
         return values
@@ -144,7 +160,7 @@ class NaiveLinks:
             if maintain.step(now, self._features(p, o, seen)) < 0
         ]
         for p in broken:
-            del self.link[p]
+            del self.link[p], self.former[p]
         return broken
 
     def _verdicts(self, now, seen):

@@ -119,7 +119,7 @@ def test_all_at_once_does_what_one_at_a_time_does(
 
         assert _links(process) == expected
         assert found.ids.tolist() == list(naive.things)
-        for row, (position, calm, _) in enumerate(naive.things.values()):
+        for row, (position, calm, *_) in enumerate(naive.things.values()):
             np.testing.assert_allclose(found["position"][row], position)
             assert found["calm"][row] == calm
 
@@ -224,3 +224,31 @@ def test_an_unknown_feature_is_named():
         _push(process, 0, {1: ((0, 0), False, True)})
 
     assert caught.value.span.place == "<formula>:1:1"
+
+
+def test_who_comes_back_under_its_own_name_takes_up_its_link():
+    """No reestablish condition is asked; unless the upper object is linked to another one by then."""
+    near = "eventually [0, oo] xydist(from, to) < 2"
+    process = LinkProcess(FlatUnit(), _settings("true", near, "true", 5000))
+    here, there = ((0, 0), False, True), ((8, 0), False, True)
+
+    _push(process, 100, {1: here})
+    _push(process, 200, {})
+    _push(process, 300, {1: there})
+    taken_up = _links(process)
+    _push(process, 400, {})
+    _push(process, 500, {2: there})
+    _push(process, 600, {1: here, 2: there})
+
+    assert taken_up == {1: 1}
+    assert _links(process) == {2: 1, 1: 2}
+
+
+def test_an_object_is_looked_for_in_a_few_states_however_seldom_they_are():
+    """It is given up in the fifth state without it if its time is over by then."""
+    process = LinkProcess(FlatUnit(), _settings("true", "false", "true", 300))
+    _push(process, 100, {1: ((0, 0), False, True)})
+
+    left = [len(_push(process, 100 + 1000 * k, {})) for k in range(1, 6)]
+
+    assert left == [1, 1, 1, 1, 0]

@@ -84,12 +84,11 @@ def test_predicting_in_steps_changes_nothing(steps):
 
 
 def test_after_a_gap_the_filter_starts_anew():
-    """What is found again after a gap is believed to be where it is, with its own velocity."""
+    """What is found again in another percept is where that is, with its own velocity."""
     world = _after([(k * 1.0, 0.0) for k in range(30)])
-    elsewhere = percepts([1], [(60.0, 40.0)], milliseconds(4900))
+    elsewhere = percepts([2], [(60.0, 40.0)], milliseconds(4900))
 
-    unseen = UNIT.predict(world, milliseconds(4800))
-    found = UNIT.update(unseen, elsewhere, milliseconds(4900))
+    found = UNIT.update(world, elsewhere, milliseconds(4900))
 
     np.testing.assert_allclose(found["position"], [[60.0, 40.0]])
     np.testing.assert_allclose(found["velocity"], elsewhere["velocity"])
