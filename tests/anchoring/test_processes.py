@@ -227,7 +227,7 @@ def test_an_unknown_feature_is_named():
 
 
 def test_who_comes_back_under_its_own_name_takes_up_its_link():
-    """No reestablish condition is asked; unless the upper object is linked to another one by then."""
+    """No condition is asked, unless the upper object is linked to another one by then."""
     near = "eventually [0, oo] xydist(from, to) < 2"
     process = LinkProcess(FlatUnit(), _settings("true", near, "true", 5000))
     here, there = ((0, 0), False, True), ((8, 0), False, True)
