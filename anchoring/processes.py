@@ -13,9 +13,10 @@ is followed by its maintain condition. What the sources leave open is settled as
 - A lower object that is itself only predicted (its column `observed` is false) is as good as
   vanished, unless the unit trusts predictions.
 - A lower object that vanished and is observed again, under its own name, takes up its link at
-  once if the upper object is there still and without a link: nothing has refuted it.
-- An upper object is not given up before it has been looked for in a few states, however seldom
-  there are any.
+  once if the upper object is there still and without a link: nothing has refuted it. One that
+  waited for its establish condition goes on waiting, as it was seen last, for as long as an
+  upper object would; it is linked when it is observed.
+- Neither is given up before it has been looked for in a few states, however seldom there are any.
 """
 
 from collections.abc import Iterable
@@ -29,6 +30,7 @@ from anchoring.links import LinkEnd, LinkSettings, LinkUnit
 from anchoring.rows import Mask, Rows, take, with_rows
 from anchoring.structures import LinkHistory
 from dyknow.mtl.monitors import MonitorColumns
+from dyknow.mtl.progression import Truths
 from dyknow.streams.process import Reactive
 from dyknow.streams.sample import Sample
 from dyknow.streams.table import Ids, Table, concatenate, positions_of
@@ -42,8 +44,11 @@ _LINKED = -1
 _NO_ONE = -1
 """As `lower` of an upper object: no lower object may take up its link."""
 
+_NEVER = -1
+"""As the number of a state: there was none yet."""
+
 _FEWEST_STATES = 5
-"""In so many states an unanchored upper object is looked for at least."""
+"""In so many states an object that is not there is looked for at least."""
 
 
 class LinkProcess(Reactive):
@@ -93,7 +98,7 @@ class LinkProcess(Reactive):
         self._predict(np.flatnonzero(self._uppers.since != _LINKED), now)
         broken = self._break_links(lower, now)
         self._begin_waiting(lower.ids[observed], broken)
-        self._link_waiting(lower, now)
+        self._link_waiting(lower, observed, now)
         self._compute(lower, observed, now)
         self._waiting.add(broken, self._step + 1)
         self._remove_unanchored(now)
@@ -106,7 +111,11 @@ class LinkProcess(Reactive):
             there[there] = observed[at[there]]
         self._unlink(self._standing.upper[~there], self._step, now, LinkEnd.VANISHED)
         self._standing.keep(there)
-        self._waiting.keep(np.isin(self._waiting.ids, lower.ids[observed]))
+        waiting = self._waiting
+        is_back = np.isin(waiting.ids, lower.ids[observed])
+        waiting.since[is_back & (waiting.seen_in < self._step - 1)] = self._step
+        begun = waiting.seen_in != _NEVER
+        waiting.keep(is_back | (begun & self._may_return(waiting.seen_at, waiting.seen_in, now)))
 
     def _resume(self, lower: Table, observed: Mask, now: TimePoint) -> None:
         """Make the links again whose lower objects had vanished and are back."""
@@ -149,17 +158,18 @@ class LinkProcess(Reactive):
         known = np.concatenate((self._standing.lower, self._waiting.ids, broken))
         self._waiting.add(observed[~np.isin(observed, known)], self._step)
 
-    def _link_waiting(self, lower: Table, now: TimePoint) -> None:
+    def _link_waiting(self, lower: Table, observed: Mask, now: TimePoint) -> None:
         """Evaluate establish and reestablish, and make the links that follow."""
         waiting, uppers = self._waiting, self._uppers
-        table = lower.select(positions_of(waiting.ids, lower.ids))
+        rows = np.flatnonzero(np.isin(waiting.ids, lower.ids[observed]))
+        table = lower.select(positions_of(waiting.ids[rows], lower.ids))
         truth = waiting.condition.truth(table, uppers.table.select(_NOBODY))
-        new = waiting.monitor.step(now, truth) > 0
+        new = waiting.step(rows, truth, now, self._step)
         free = np.flatnonzero((uppers.since != _LINKED) & (uppers.since <= self._step))
         at, on = self._candidates.step(
             now,
             self._step,
-            Unlinked(table, waiting.since),
+            Unlinked(table, waiting.since[rows]),
             Unlinked(uppers.table.select(free), uppers.since[free]),
         )
         new[at] = False
@@ -167,7 +177,7 @@ class LinkProcess(Reactive):
         begun = table.select(np.flatnonzero(new)[np.argsort(table.ids[new])])
         self._link(begun, self._created(begun, now), now)
         new[at] = True
-        waiting.keep(~new)
+        waiting.keep(~np.isin(waiting.ids, table.ids[new]))
 
     def _created(self, lower: Table, now: TimePoint) -> Ids:
         ids = np.arange(self._next_id, self._next_id + len(lower), dtype=np.int64)
@@ -200,9 +210,7 @@ class LinkProcess(Reactive):
     def _remove_unanchored(self, now: TimePoint) -> None:
         """Give up the upper objects that no percept has fed for too long."""
         uppers = self._uppers
-        kept = (now - uppers.anchored_at < self._remove_after) | (
-            self._step - uppers.anchored_in < _FEWEST_STATES
-        )
+        kept = self._may_return(uppers.anchored_at, uppers.anchored_in, now)
         if kept.all():
             return
         linked = uppers.since == _LINKED
@@ -210,13 +218,22 @@ class LinkProcess(Reactive):
         uppers.keep(kept)
         self._standing.keep(np.isin(self._standing.upper, uppers.table.ids))
 
+    def _may_return(self, seen_at: Ids, seen_in: Ids, now: TimePoint) -> Mask:
+        """Return which objects, seen last at that time and in that state, may come back."""
+        recent: Mask = now - seen_at < self._remove_after
+        recent |= self._step - seen_in < _FEWEST_STATES
+        return recent
+
 
 class _Waiting:
     """Lower objects without a link, and how far their establish condition has come.
 
     Attributes:
         ids: shape (n,).
-        since: shape (n,), the number of the first state that the condition is about.
+        since: shape (n,), the number of the first state that a pair with each may be about.
+        truth: shape (atoms, n), of the condition when each was seen last.
+        seen_at: shape (n,), when that was.
+        seen_in: shape (n,), the number of that state; `_NEVER` before the first one.
     """
 
     def __init__(self, condition: Condition) -> None:
@@ -224,15 +241,37 @@ class _Waiting:
         self.monitor = MonitorColumns(condition.table)
         self.ids: Ids = _NOBODY
         self.since: Ids = _NOBODY
+        self.truth: Truths = np.zeros((len(condition.table.atoms), 0), dtype=np.bool_)
+        self.seen_at: Ids = _NOBODY
+        self.seen_in: Ids = _NOBODY
 
     def add(self, ids: Ids, since: int) -> None:
-        self.monitor.add(len(ids))
+        n = len(ids)
+        self.monitor.add(n)
         self.ids = np.concatenate((self.ids, ids))
-        self.since = np.concatenate((self.since, np.full(len(ids), since)))
+        self.since = np.concatenate((self.since, np.full(n, since)))
+        unknown = np.zeros((len(self.truth), n), dtype=np.bool_)
+        self.truth = np.concatenate((self.truth, unknown), axis=1)
+        self.seen_at = np.concatenate((self.seen_at, np.full(n, _NEVER)))
+        self.seen_in = np.concatenate((self.seen_in, np.full(n, _NEVER)))
+
+    def step(self, rows: Rows, truth: Truths, now: TimePoint, step: int) -> Mask:
+        """Take in the *truth* of the condition in the state of *rows*, and of no others.
+
+        Returns:
+            In which of the rows the condition has become true by now.
+        """
+        self.truth[:, rows] = truth
+        self.seen_at[rows], self.seen_in[rows] = now, step
+        true: Mask = self.monitor.step(now, self.truth)[rows] > 0
+        return true
 
     def keep(self, mask: Mask) -> None:
+        if mask.all():
+            return
         self.monitor.keep(mask)
-        self.ids, self.since = self.ids[mask], self.since[mask]
+        self.ids, self.since, self.truth = self.ids[mask], self.since[mask], self.truth[:, mask]
+        self.seen_at, self.seen_in = self.seen_at[mask], self.seen_in[mask]
 
 
 class _Standing:

@@ -74,18 +74,21 @@ class NaiveLinks:
         self.settings, self.gate, self.trusts = settings, gate, trusts_predictions
         self.things = {}  # upper id -> position, calm, anchored at, anchored in
         self.former = {}  # lower id -> upper id of its link, if it may be taken up
+        self.away = set()  # waiting lower ids that are not observed
         self.number = 0
         self.link = {}  # lower id -> (upper id, maintain)
         self.waiting = {}  # lower id -> (establish, {upper id: reestablish})
+        self.last = {}  # waiting lower id -> its features, when it was seen last, in which state
         self.next_id = 1
 
     def step(self, now, seen) -> dict[int, int]:
         """Take in *seen*: id -> (position, loud, observed); return the links."""
         self.number += 1
-        usable = self._drop(seen)
+        usable = self._drop(now, seen)
         self._resume(usable)
         for p in usable - set(self.waiting) - set(self.link):
-            self.waiting[p] = (_Formula(self.settings.establish), {})
+            self._wait(p)
+        self.away = set(self.waiting) - usable
         self._update_candidates()
         broken = self._maintain(now, seen)
         self._make_links(now, seen)
@@ -94,15 +97,20 @@ class NaiveLinks:
             if seen[p][2]:
                 self.things[o][2:] = now, self.number
         for p in broken:
-            self.waiting[p] = (_Formula(self.settings.establish), {})
+            self._wait(p)
         self._update_candidates()
         for o in [o for o, t in self.things.items() if self._is_lost(t, now)]:
             del self.things[o]
             self.link = {p: link for p, link in self.link.items() if link[0] != o}
         return {p: o for p, (o, _) in self.link.items()}
 
-    def _is_lost(self, thing, now) -> bool:
-        return now - thing[2] >= self.settings.remove_after and self.number - thing[3] >= 5
+    def _wait(self, p) -> None:
+        self.waiting[p] = (_Formula(self.settings.establish), {})
+        self.last.pop(p, None)
+
+    def _is_lost(self, known, now) -> bool:
+        """Whether something known by (.., .., when, in which state) has been away too long."""
+        return now - known[2] >= self.settings.remove_after and self.number - known[3] >= 5
 
     def _resume(self, usable) -> None:
         """Make the links again whose lower objects are back."""
@@ -122,19 +130,23 @@ class NaiveLinks:
             self._connect(p, self.next_id)
             self.next_id += 1
 
-    def _drop(self, seen) -> set[int]:
+    def _drop(self, now, seen) -> set[int]:
         """Forget what vanished and return the ids that are observed."""
         usable = {p for p, (_, _, observed) in seen.items() if observed}
         for p in list(self.link):
             if p not in usable and not (self.trusts and p in seen):
                 del self.link[p]
         for p in set(self.waiting) - usable:
-            del self.waiting[p]
+            self.waiting[p][1].clear()
+            if p not in self.last or self._is_lost(self.last[p], now):
+                del self.waiting[p]
         return usable
 
     def _update_candidates(self) -> None:
         free = set(self.things) - {o for o, _ in self.link.values()}
-        for _, pairs in self.waiting.values():
+        for p, (_, pairs) in self.waiting.items():
+            if p in self.away:
+                continue
             for o in set(pairs) - free:
                 del pairs[o]
             for o in free - set(pairs):
@@ -166,7 +178,9 @@ class NaiveLinks:
     def _verdicts(self, now, seen):
         established, reestablished = set(), []
         for p, (establish, pairs) in self.waiting.items():
-            if establish.step(now, self._features(p, None, seen)) > 0:
+            if p not in self.away:
+                self.last[p] = self._features(p, None, seen), None, now, self.number
+            if establish.step(now, self.last[p][0]) > 0 and p not in self.away:
                 established.add(p)
             for o, reestablish in pairs.items():
                 if reestablish.step(now, self._features(p, o, seen)) > 0:
