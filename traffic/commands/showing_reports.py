@@ -33,8 +33,7 @@ def _show_findings(findings: Findings) -> None:
     if findings.experiment is not None:
         show_experiment(findings.experiment)
         return
-    title = f"[bold]{escape(findings.name)}[/]: {escape(findings.description)}"
-    Console().print(title, highlight=False)
+    Console().print(_titled(findings), highlight=False)
     show_cells(findings.varying, findings.measures, findings.cells)
 
 
@@ -45,12 +44,16 @@ def _show_beside(beside: Beside) -> None:
     """
     console = Console()
     for side in beside.sides:
-        told = f"[bold]{escape(side.name)}[/]: {escape(side.description)}"
-        console.print(told, highlight=False)
+        console.print(_titled(side), highlight=False)
     for measure in beside.measures:
         console.print(_beside_table(beside, measure))
     for remark in remarks_about(beside):
         console.print(escape(remark), highlight=False)
+
+
+def _titled(findings: Findings) -> str:
+    description = f": {escape(findings.description)}" if findings.description else ""
+    return f"[bold]{escape(findings.name)}[/]{description}"
 
 
 def _beside_table(beside: Beside, measure: str) -> Table:
