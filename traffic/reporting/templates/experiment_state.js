@@ -54,7 +54,7 @@ function prepared(factor) {
   return { ...factor, of: factor.levels.map((_, i) => i), shown };
 }
 const factors = data.factors.map(prepared);
-const isShort = (name) => data.factors.filter((each) => each.name.split(".").pop() === name.split(".").pop()).length === 1;
+const isShort = (name) => data.factors.filter((each) => each.name.split(".").pop() === name.split(".").pop()).length <= 1;
 const shortName = (name) => words(isShort(name) ? name.split(".").pop() : name);
 const factorName = (f) => shortName(factors[f].name) + (factors[f].unit ? `, ${factors[f].unit}` : "");
 const levelText = (f, level) => factors[f].shown[level].text;
