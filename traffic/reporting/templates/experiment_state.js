@@ -59,8 +59,11 @@ const shortName = (name) => words(isShort(name) ? name.split(".").pop() : name);
 const factorName = (f) => shortName(factors[f].name) + (factors[f].unit ? `, ${factors[f].unit}` : "");
 const levelText = (f, level) => factors[f].shown[level].text;
 const isOnlyUnit = (f) => several.every((other) => other === f || factors[other].unit !== factors[f].unit);
-const levelWords = (f, level) =>
-  factors[f].unit && isOnlyUnit(f) ? `${levelText(f, level)} ${factors[f].unit}` : `${shortName(factors[f].name)} ${levelText(f, level)}`;
+const levelWords = (f, level) => {
+  const { name, unit } = factors[f];
+  const text = unit ? `${levelText(f, level)} ${unit}` : levelText(f, level);
+  return unit && isOnlyUnit(f) ? text : `${shortName(name)} ${text}`;
+};
 const isNumeric = (f) => factors[f].amounts !== null;
 
 for (const experiment of experiments) {
