@@ -34,7 +34,7 @@ __all__ = ["CellFile", "bundled_cell_files", "find_cell_file", "read_cell_file"]
 
 _MEASURE = re.compile(rf"[a-z][a-z0-9_]*\.(?P<what>{'|'.join(MEASURES)})")
 _PARTS = ("successes", "trials", "low", "high")
-_OF_RUNS = ("detection", "false_alarms")
+_OF_RUNS = ("detection", "false_alarms", "faultless")
 _INTEGER = re.compile(r"[+-]?\d{1,15}")
 _NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d{1,3})?")
 _MOST_FAULTS = 20

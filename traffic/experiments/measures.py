@@ -6,7 +6,8 @@ A measure is written KIND.WHAT, where KIND is a kind of manoeuvre that runs scor
 * `recall`: true manoeuvres that were recognised, of all true ones in view;
 * `precision`: recognitions that the truth confirms, of all recognitions;
 * `detection`: runs in which every true manoeuvre was recognised, of the runs that had any;
-* `false_alarms`: runs with a recognition that is false, of all runs.
+* `false_alarms`: runs with a recognition that is false, of all runs;
+* `faultless`: runs in which every true manoeuvre was recognised and nothing false, of all runs.
 """
 
 import re
@@ -79,11 +80,16 @@ def _false_alarms(runs: Iterable[Counts]) -> Iterable[tuple[int, int]]:
     return ((int(run.recognised > run.correct), 1) for run in runs)
 
 
+def _faultless(runs: Iterable[Counts]) -> Iterable[tuple[int, int]]:
+    return ((int(run.truth == run.correct == run.recognised), 1) for run in runs)
+
+
 MEASURES: Mapping[str, Callable[[Iterable[Counts]], Iterable[tuple[int, int]]]] = {
     "recall": _recall,
     "precision": _precision,
     "detection": _detection,
     "false_alarms": _false_alarms,
+    "faultless": _faultless,
 }
 """Gives the successes and trials of each run, by what is asked."""
 
@@ -93,6 +99,7 @@ MEANINGS: Mapping[str, str] = {
     "precision": "recognitions that the truth confirms",
     "detection": "runs, of those with anything true in view, in which all of it was recognised",
     "false_alarms": "runs with a recognition that is false",
+    "faultless": "runs in which everything true was recognised and nothing false",
 }
 """Says of what a measure is the share, by what is asked."""
 

@@ -34,6 +34,10 @@ def test_every_measure_is_what_it_says(runs: list[Counts]) -> None:
         len([run for run in runs if run.recognised - run.correct > 0]),
         len(runs),
     )
+    assert share("x.faultless", runs) == (
+        len([run for run in runs if run.correct == run.truth and run.correct == run.recognised]),
+        len(runs),
+    )
 
 
 def test_a_share_of_nothing_has_no_value() -> None:

@@ -106,6 +106,7 @@ def test_the_runs_to_look_at_are_those_that_spoil_the_measure(found: list[Counts
         "precision": lambda run: run.correct < run.recognised,
         "detection": lambda run: run.correct < run.truth,
         "false_alarms": lambda run: run.correct < run.recognised,
+        "faultless": lambda run: run.correct < max(run.truth, run.recognised),
     }
     for number, runs in enumerate(cells):
         done = [(o.seed, o.counts.get("overtake")) for o in outcomes.values() if o.cell == number]
