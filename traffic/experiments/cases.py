@@ -1,7 +1,9 @@
 """One run of an experiment: from settings to what was counted."""
 
+import errno
 import hashlib
 import json
+import os
 import tempfile
 import time
 from collections.abc import Iterator, Mapping
@@ -9,15 +11,18 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from traffic.errors import ExperimentError
 from traffic.experiments.designs import Cell, Design, Level
 from traffic.experiments.measures import Counts
 from traffic.request import RunRequest
 from traffic.running import run_scenario
+from traffic.scenarios import scenario_path
 
-__all__ = ["Case", "Outcome", "cases_of", "request_of", "run_case", "settings_of"]
+__all__ = ["Case", "Outcome", "cases_of", "request_of", "run_case", "scenario_file", "settings_of"]
 
 _KEY_LENGTH = 32
 _SPECIFICATION = "specification"
+_FULL = frozenset({errno.ENOSPC, errno.EDQUOT})
 
 
 @dataclass(frozen=True, slots=True)
@@ -112,6 +117,15 @@ def settings_of(design: Design, cell: Cell) -> dict[str, Level]:
     return {**design.fixed, **cell}
 
 
+def scenario_file(case: Case) -> Path:
+    """Return the file of the scenario of a case.
+
+    Raises:
+        ScenarioError: There is none.
+    """
+    return scenario_path(_scenario(case))
+
+
 def request_of(case: Case, out: Path) -> RunRequest:
     """Return the request of a case that writes its run to *out*.
 
@@ -120,21 +134,29 @@ def request_of(case: Case, out: Path) -> RunRequest:
     Raises:
         TrafficError: A setting is impossible.
     """
-    is_file = case.scenario.endswith(".toml")
-    scenario = str(case.folder / case.scenario) if is_file else case.scenario
     settings = dict(case.settings)
     if _SPECIFICATION in settings:
         settings[_SPECIFICATION] = str(case.folder / str(settings[_SPECIFICATION]))
-    return RunRequest.from_settings(scenario, settings, seed=case.seed, out=out)
+    return RunRequest.from_settings(_scenario(case), settings, seed=case.seed, out=out)
 
 
 def run_case(case: Case) -> Outcome:
-    """Do a run and return what was counted; an error that ends it becomes part of the answer."""
+    """Do a run and return what was counted; an error that ends it becomes part of the answer.
+
+    Raises:
+        ExperimentError: There is no room left to write the run, which may be done again later.
+    """
     began = time.perf_counter()
     try:
         with tempfile.TemporaryDirectory(prefix="traffic-") as folder:
             result, _ = run_scenario(request_of(case, Path(folder) / "run"), _ignore)
-    except Exception as error:  # noqa: BLE001, whatever it is, it is told and the others go on
+    except Exception as error:  # whatever it is, it is told, and the others go on
+        if _is_for_want_of_room(error):
+            place = tempfile.gettempdir()
+            fault = f"cannot write a run to '{place}': {os.strerror(errno.ENOSPC)}"
+            raise ExperimentError(
+                f"{fault}; the runs before are safe, --resume does the others"
+            ) from error
         text = f"{type(error).__name__}: {error}"
         return Outcome(case.key, case.cell, case.seed, {}, text, time.perf_counter() - began)
     counts = {
@@ -143,6 +165,20 @@ def run_case(case: Case) -> Outcome:
     }
     seconds = time.perf_counter() - began
     return Outcome(case.key, case.cell, case.seed, counts, seconds=seconds)
+
+
+def _scenario(case: Case) -> str:
+    is_file = case.scenario.endswith(".toml")
+    return str(case.folder / case.scenario) if is_file else case.scenario
+
+
+def _is_for_want_of_room(error: BaseException | None) -> bool:
+    """Return whether an error came about because a disk is full."""
+    while error is not None:
+        if isinstance(error, OSError) and error.errno in _FULL:
+            return True
+        error = error.__cause__ or error.__context__
+    return False
 
 
 def _ignore(_done: float, _total: float) -> None:

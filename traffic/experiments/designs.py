@@ -28,13 +28,32 @@ from pathlib import Path
 from typing import Annotated, Self
 
 import numpy as np
-from pydantic import BaseModel, ConfigDict, Field, model_validator
+from pydantic import (
+    BaseModel,
+    BeforeValidator,
+    ConfigDict,
+    Discriminator,
+    Field,
+    Tag,
+    model_validator,
+)
 
 from traffic.experiments.measures import Measure
 
 __all__ = ["Cell", "Design", "Level", "LevelRange", "Sampling"]
 
-Level = bool | int | float | str
+
+def _checked(value: object) -> object:
+    is_level = isinstance(value, bool | int | str) or (
+        isinstance(value, float) and math.isfinite(value)
+    )
+    if not is_level:
+        expected = "a number, a text, or true or false"
+        raise ValueError(f"expected {expected}, found {value}")
+    return value
+
+
+Level = Annotated[bool | int | float | str, BeforeValidator(_checked)]
 """A value of a setting."""
 
 Cell = Mapping[str, Level]
@@ -97,7 +116,15 @@ class Sampling(_Table):
     seed: Annotated[int, Field(ge=0)] = 1
 
 
-Levels = Annotated[tuple[Level, ...], Field(min_length=1)] | LevelRange
+def _shape(value: object) -> str:
+    return "range" if isinstance(value, dict | LevelRange) else "list"
+
+
+Levels = Annotated[
+    Annotated[tuple[Level, ...], Field(min_length=1), Tag("list")]
+    | Annotated[LevelRange, Tag("range")],
+    Discriminator(_shape),
+]
 
 
 class Design(_Table):

@@ -6,29 +6,40 @@ without an error. So a worker has one thread, and a cluster whose workers have m
 
 import logging
 import os
-from collections.abc import Iterable, Iterator
+from collections.abc import Collection, Iterable, Iterator
 from contextlib import contextmanager
+from pathlib import Path
 from typing import Any
 
 import dask
-from distributed import Client, Future, KilledWorker, LocalCluster, as_completed
+from distributed import Client, Future, KilledWorker, LocalCluster, wait
+from distributed.client import FuturesCancelledError
 
+from traffic.bundled import data_folder
 from traffic.errors import ExperimentError
 from traffic.experiments.cases import Case, Outcome, run_case
-from traffic.origin import versions
+from traffic.experiments.folders import Basis
+from traffic.origin import digest_of, versions
 
 __all__ = ["Engine", "cluster_at", "local_workers"]
 
 _WAITING = 4
 """How many cases each worker has in hand, so that it need not wait for the next one."""
 
+_LOOK = 5
+"""After so many seconds without a finished run, it is asked whether there are workers."""
+
+_LONGEST_WITHOUT_WORKERS = 60
+"""Seconds; workers that have died may be replaced in the meantime."""
+
+_SAFE = "the runs before are safe, --resume does the others"
 _SECONDS = "10s"
 _SETTINGS = {
     "distributed.comm.timeouts.connect": _SECONDS,
     "distributed.scheduler.allowed-failures": 3,
     "distributed.worker.memory.terminate": False,
     "distributed.admin.tick.limit": "1h",
-    "logging.distributed": "error",
+    "logging.distributed": "critical",
 }
 
 
@@ -56,23 +67,40 @@ class Engine:
 
         A worker that dies is replaced, and its cases are done again; a case with which several
         workers have died has failed.
+
+        Raises:
+            ExperimentError: The cluster went away, or its workers did and no others came, or
+                they have no room left.
         """
         waiting = iter(cases)
-        case_by_key: dict[str, Case] = {}
-        finished = as_completed(with_results=False)
-        for _, case in zip(range(_WAITING * max(1, self.n_workers)), waiting, strict=False):
-            finished.add(self._submit(case, case_by_key))
-        for future in finished:
-            case = case_by_key.pop(future.key)
-            following = next(waiting, None)
-            if following is not None:
-                finished.add(self._submit(following, case_by_key))
-            yield _outcome(future, case)
-            future.release()
+        case_by_future: dict[Future[Any], Case] = {}
+        while True:
+            free = _WAITING * max(1, self.n_workers) - len(case_by_future)
+            for _, case in zip(range(free), waiting, strict=False):
+                future = self._client.submit(run_case, case, key=case.key, pure=False)
+                case_by_future[future] = case
+            if not case_by_future:
+                return
+            for future in self._finished(case_by_future):
+                yield _outcome(future, case_by_future.pop(future))
+                future.release()
 
-    def _submit(self, case: Case, case_by_key: dict[str, Case]) -> "Future[Any]":
-        case_by_key[case.key] = case
-        return self._client.submit(run_case, case, key=case.key, pure=False)
+    def _finished(self, futures: Collection["Future[Any]"]) -> set["Future[Any]"]:
+        """Return those that are done, at least one; wait for it as long as there are workers."""
+        without_workers = 0
+        while without_workers < _LONGEST_WITHOUT_WORKERS:
+            try:
+                with self._client.as_current():
+                    done: set[Future[Any]] = wait(
+                        list(futures), timeout=_LOOK, return_when="FIRST_COMPLETED"
+                    ).done
+                    return done
+            except TimeoutError:
+                without_workers = 0 if self.n_workers else without_workers + _LOOK
+            except FuturesCancelledError as error:
+                raise ExperimentError(f"the cluster went away; {_SAFE}") from error
+        fault = f"there were no workers for {_LONGEST_WITHOUT_WORKERS} s; {_SAFE}"
+        raise ExperimentError(fault)
 
 
 @contextmanager
@@ -95,16 +123,17 @@ def local_workers(number: int) -> Iterator[Engine]:
 
 
 @contextmanager
-def cluster_at(address: str, timeout: str = _SECONDS) -> Iterator[Engine]:
+def cluster_at(address: str, basis: Basis, timeout: str = _SECONDS) -> Iterator[Engine]:
     """Give an engine with the workers of a cluster while the block lasts.
 
     Args:
         address: Of the cluster's scheduler, such as `tcp://host:8786`.
+        basis: What the runs are to depend on.
         timeout: How long to wait for an answer.
 
     Raises:
         ExperimentError: The cluster does not answer, has no workers, has workers with more than
-            one thread, or has another version of this program.
+            one thread, or has other versions of this program or of the files that runs read.
     """
     with _quiet():
         try:
@@ -113,7 +142,7 @@ def cluster_at(address: str, timeout: str = _SECONDS) -> Iterator[Engine]:
             fault = f"--cluster: no cluster answers at '{address}': {error}"
             raise ExperimentError(fault) from error
         with client:
-            _check(client, address)
+            _check(client, address, basis)
             yield Engine(client)
 
 
@@ -130,7 +159,7 @@ def _quiet() -> Iterator[None]:
         logger.setLevel(level)
 
 
-def _check(client: Client, address: str) -> None:
+def _check(client: Client, address: str, basis: Basis) -> None:
     workers = _workers(client)
     if not workers:
         raise ExperimentError(f"--cluster: the cluster at '{address}' has no workers")
@@ -142,16 +171,35 @@ def _check(client: Client, address: str) -> None:
             "threads would change under each other's feet; start them with --nthreads 1"
         )
         raise ExperimentError(fault)
-    ours = versions()
-    for name, theirs in client.run(versions).items():
-        if different := [each for each in ours if theirs.get(each) != ours[each]]:
-            each = different[0]
-            fault = f"worker {name} has {each} {theirs.get(each)}, this program {ours[each]}"
+    answers = client.run(_basis_here, basis, data_folder(), on_error="return")
+    for name, theirs in answers.items():
+        if not isinstance(theirs, Basis):
+            fault = f"expected this program on all workers, found on worker {name}: {theirs}"
+            raise ExperimentError(f"--cluster: {fault}")
+        if (different := theirs.difference(basis)) is not None:
+            fault = f"worker {name} is not as this program: {different} is not the same"
             raise ExperimentError(f"--cluster: {fault}")
 
 
+def _basis_here(basis: Basis, bundled: Path) -> Basis:
+    """Return what of *basis* there is on this machine; what is *bundled* may lie elsewhere."""
+    files = {path: _digest(_here(Path(path), bundled)) for path in basis.files_sha256}
+    return basis.model_copy(update={"versions": versions(), "files_sha256": files})
+
+
+def _here(path: Path, bundled: Path) -> Path:
+    return data_folder() / path.relative_to(bundled) if path.is_relative_to(bundled) else path
+
+
+def _digest(path: Path) -> str:
+    try:
+        return digest_of(path)
+    except OSError as error:
+        return f"{error.strerror}"
+
+
 def _workers(client: Client) -> dict[str, Any]:
-    found: dict[str, Any] = client.scheduler_info(n_workers=-1)["workers"]
+    found: dict[str, Any] = client.scheduler_info(n_workers=-1).get("workers", {})
     return found
 
 
@@ -160,6 +208,8 @@ def _outcome(future: "Future[Any]", case: Case) -> Outcome:
         found: Outcome = future.result()
         return found
     error = future.exception()
+    if isinstance(error, ExperimentError):
+        raise error
     died = isinstance(error, KilledWorker)
     text = "the process that did it died, again and again" if died else f"{error}"
     return Outcome(case.key, case.cell, case.seed, {}, text)

@@ -5,7 +5,9 @@
 A folder belongs to one design and one version of the program, for good.
 """
 
-from collections.abc import Iterable
+import fcntl
+from collections.abc import Iterable, Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -19,6 +21,8 @@ from traffic.origin import digest_of, versions
 __all__ = ["Basis", "ExperimentFolder", "basis_of", "write_whole"]
 
 _FORMAT = 1
+_PARTIAL = ".partial"
+"""The ending of a file that is being written."""
 
 
 class Basis(BaseModel):
@@ -49,7 +53,7 @@ class Basis(BaseModel):
             return "the design"
         for name, version in other.versions.items():
             if (was := self.versions.get(name)) != version:
-                return f"the version of {name} ({was}, now {version})"
+                return f"the version of {name} ({was}, here {version})"
         paths = self.files_sha256.keys() | other.files_sha256.keys()
         for path in sorted(paths):
             if self.files_sha256.get(path) != other.files_sha256.get(path):
@@ -103,18 +107,23 @@ class ExperimentFolder:
         return self.path / "cells.csv"
 
     def begin(self, design: Path, basis: Basis) -> None:
-        """Make the folder.
+        """Make the folder; one that is empty, or where this was begun and not done, will do.
 
         Raises:
-            ExperimentError: There is one already, or it cannot be made.
+            ExperimentError: There is something else already, or it cannot be made.
         """
+        self._forbid_another()
         try:
-            self.path.mkdir(parents=True)
-            text = design.read_text(encoding="utf-8")
-            write_whole(self.design, text.encode())
-            write_whole(self._basis_file, basis.model_dump_json(indent=1).encode() + b"\n")
+            self.path.mkdir(parents=True, exist_ok=True)
+            if strange := sorted({each.name for each in self.path.iterdir()} - self._own):
+                found = f"'{self.path}' with '{strange[0]}' in it"
+                raise ExperimentError(f"--out: expected a new or empty folder, found {found}")
+            with self.locked():
+                self._forbid_another()
+                write_whole(self.design, design.read_bytes())
+                write_whole(self._basis_file, basis.model_dump_json(indent=1).encode() + b"\n")
         except FileExistsError as error:
-            fault = f"'{self.path}' exists already; --resume goes on with what is there"
+            fault = f"--out: expected a folder, found the file '{self.path}'"
             raise ExperimentError(fault) from error
         except OSError as error:
             raise ExperimentError(f"cannot write to '{self.path}': {error.strerror}") from error
@@ -144,7 +153,12 @@ class ExperimentFolder:
         except OSError as error:
             fault = f"'{self.path}' holds no experiment: {error.strerror}"
             raise ExperimentError(fault) from error
-        except (ValidationError, UnicodeDecodeError) as error:
+        except ValidationError as error:
+            first = error.errors()[0]
+            key = ".".join(map(str, first["loc"]))
+            fault = f"'{self._basis_file}' is damaged: {key}{': ' if key else ''}{first['msg']}"
+            raise ExperimentError(fault) from error
+        except UnicodeDecodeError as error:
             raise ExperimentError(f"'{self._basis_file}' is damaged: {error}") from error
 
     def outcomes(self) -> dict[str, Outcome]:
@@ -164,6 +178,35 @@ class ExperimentFolder:
             found.setdefault(outcome.key, outcome)
         return found
 
+    @contextmanager
+    def locked(self) -> Iterator[None]:
+        """Keep other programs from working in the folder while the block lasts.
+
+        Raises:
+            ExperimentError: Another one is at work there, or the folder cannot be written.
+        """
+        try:
+            file = self.journal.open("ab")
+        except OSError as error:
+            raise ExperimentError(f"cannot write '{self.journal}': {error.strerror}") from error
+        with file:
+            try:
+                fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+            except BlockingIOError as error:
+                raise ExperimentError(f"another program is at work in '{self.path}'") from error
+            yield
+
+    def _forbid_another(self) -> None:
+        if self.is_there:
+            fault = f"'{self.path}' exists already; --resume goes on with what is there"
+            raise ExperimentError(fault)
+
+    @property
+    def _own(self) -> set[str]:
+        """Names of what is there before an experiment has begun."""
+        begun = (self.design, self._basis_file)
+        return {self.journal.name, *(n for p in begun for n in (p.name, f"{p.name}{_PARTIAL}"))}
+
     @property
     def _basis_file(self) -> Path:
         return self.path / "experiment.json"
@@ -175,7 +218,7 @@ def write_whole(path: Path, content: bytes) -> None:
     Raises:
         OSError: It cannot be written.
     """
-    partial = path.with_name(f"{path.name}.partial")
+    partial = path.with_name(f"{path.name}{_PARTIAL}")
     try:
         partial.write_bytes(content)
         partial.replace(path)

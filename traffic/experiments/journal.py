@@ -16,6 +16,8 @@ __all__ = ["Journal", "read_lines"]
 
 Line = Mapping[str, Any]
 
+_REMEDY = "without this line, --resume does its run again"
+
 
 class Journal:
     """Appends lines to a file; use it in a `with` block.
@@ -53,7 +55,7 @@ class Journal:
         except OSError as error:
             self._file.truncate(self._length)
             fault = f"cannot write '{self._path}': {error.strerror}; the runs before are safe"
-            raise ExperimentError(fault) from error
+            raise ExperimentError(f"{fault}, --resume does the others") from error
 
     def close(self) -> None:
         """Close the file."""
@@ -81,9 +83,11 @@ def read_lines(path: Path) -> Iterator[dict[str, Any]]:
         try:
             value = json.loads(line)
         except ValueError as error:
-            raise ExperimentError(f"{path}:{number}: expected a JSON object: {error}") from error
+            fault = f"expected a JSON object: {error}; {_REMEDY}"
+            raise ExperimentError(f"{path}:{number}: {fault}") from error
         if not isinstance(value, dict):
-            raise ExperimentError(f"{path}:{number}: expected a JSON object, found {value!r}")
+            fault = f"expected a JSON object, found {value!r}; {_REMEDY}"
+            raise ExperimentError(f"{path}:{number}: {fault}")
         yield value
 
 

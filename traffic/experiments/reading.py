@@ -9,7 +9,7 @@ from dyknow.errors import SpecificationErrors
 from dyknow.source_text import nearest_name
 from traffic.bundled import data_folder
 from traffic.errors import ExperimentError, TrafficError
-from traffic.experiments.cases import Case, request_of
+from traffic.experiments.cases import Case, request_of, scenario_file
 from traffic.experiments.designs import Cell, Design, Level, LevelRange, Sampling
 from traffic.experiments.measures import kind_of
 from traffic.running import CheckedRequest, check_request
@@ -81,11 +81,15 @@ class CheckedDesign:
     Args:
         design: The design.
         checked: What was found out about some of its runs, of which each level is in one.
+        scenarios: The files of the scenarios.
     """
 
-    def __init__(self, design: Design, checked: tuple[CheckedRequest, ...]) -> None:
+    def __init__(
+        self, design: Design, checked: tuple[CheckedRequest, ...], scenarios: tuple[Path, ...]
+    ) -> None:
         self.design = design
-        self.files = tuple(dict.fromkeys(file for each in checked for file in each.files))
+        others = (file for each in checked for file in each.files)
+        self.files = tuple(dict.fromkeys([*scenarios, *others]))
         seconds = [each.simulated_seconds for each in checked]
         self.simulated_seconds = sum(seconds) / len(seconds) * design.n_runs
 
@@ -101,15 +105,18 @@ def check_design(path: Path, design: Design) -> CheckedDesign:
     source, _ = read_toml(path, ExperimentError)
     found: list[tuple[str, KeyPath]] = []
     checked: list[CheckedRequest] = []
+    scenarios: dict[Path, None] = {}
     for cell, place in _trials(design):
+        settings = {**design.fixed, **cell}
         try:
-            checked.append(_tried(design, {**design.fixed, **cell}))
+            checked.append(_tried(design, settings))
+            scenarios[scenario_file(_case(design, settings))] = None
         except (TrafficError, SpecificationErrors) as error:
             found.append((_fault(error), _culprit(design, cell) or place))
     found += _unknown_measures(design, checked)
     if found:
         raise ExperimentError(*dict.fromkeys(faults_of(found, source)))
-    return CheckedDesign(design, tuple(checked))
+    return CheckedDesign(design, tuple(checked), tuple(scenarios))
 
 
 _OWN = {"name", "folder"}
@@ -172,10 +179,13 @@ def _trials(design: Design) -> Iterator[tuple[Cell, KeyPath]]:
 
 
 def _tried(design: Design, settings: dict[str, Level]) -> CheckedRequest:
+    return check_request(request_of(_case(design, settings), Path("unwritten")))
+
+
+def _case(design: Design, settings: dict[str, Level]) -> Case:
     others = {name: level for name, level in settings.items() if name != _SCENARIO}
     scenario = str(settings.get(_SCENARIO, design.scenario or ""))
-    case = Case(0, design.first_seed, scenario, others, design.folder)
-    return check_request(request_of(case, Path("unwritten")))
+    return Case(0, design.first_seed, scenario, others, design.folder)
 
 
 def _culprit(design: Design, cell: Cell) -> KeyPath | None:
@@ -211,4 +221,4 @@ def _unknown_measures(design: Design, checked: list[CheckedRequest]) -> Found:
 def _fault(error: Exception) -> str:
     if isinstance(error, SpecificationErrors):
         return "; ".join(str(each) for each in error.exceptions)
-    return str(error)
+    return "\n".join(dict.fromkeys(str(error).split("\n")))

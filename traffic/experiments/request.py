@@ -9,7 +9,8 @@ from traffic.experiments.reading import find_design
 
 __all__ = ["ExperimentRequest"]
 
-_MOST_WORKERS = 1024
+_MOST_WORKERS = 8
+"""For each processor; more would only be in each other's way."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -52,12 +53,15 @@ class ExperimentRequest:
         if workers is not None and cluster is not None:
             fault = "nothing, because a cluster has the workers that it has"
             raise RequestError("--workers", fault, workers)
-        if workers is not None and not 1 <= workers <= _MOST_WORKERS:
-            raise RequestError("--workers", f"a number from 1 to {_MOST_WORKERS}", workers)
+        processors = len(os.sched_getaffinity(0))
+        most = _MOST_WORKERS * processors
+        if workers is not None and not 1 <= workers <= most:
+            expected = f"a number from 1 to {most}, as there are {processors} processors here"
+            raise RequestError("--workers", expected, workers)
         path = find_design(design)
         return cls(
             design=path,
-            workers=workers or len(os.sched_getaffinity(0)),
+            workers=workers or processors,
             cluster=cluster,
             folder=out or Path("experiments") / path.stem,
             resume=resume,

@@ -11,7 +11,7 @@ from traffic.experiments.conducting import OnProgress, conduct
 from traffic.experiments.designs import Design
 from traffic.experiments.engine import Engine, cluster_at, local_workers
 from traffic.experiments.estimating import MANY_RUNS, Estimate, estimate
-from traffic.experiments.folders import ExperimentFolder, basis_of
+from traffic.experiments.folders import Basis, ExperimentFolder, basis_of
 from traffic.experiments.reading import check_design, read_design
 from traffic.experiments.request import ExperimentRequest
 from traffic.experiments.tables import CellMeasures, measure_cells
@@ -61,7 +61,7 @@ def run_experiment(request: ExperimentRequest, on_progress: OnProgress) -> Exper
         folder.resume(basis)
     else:
         folder.begin(request.design, basis)
-    with _engine(request) as engine:
+    with folder.locked(), _engine(request, basis) as engine:
         conduct(design, folder, engine, on_progress)
     return read_experiment(request.folder, design)
 
@@ -105,7 +105,7 @@ def read_experiment(path: Path, design: Design | None = None) -> Experiment:
     )
 
 
-def _engine(request: ExperimentRequest) -> AbstractContextManager[Engine]:
+def _engine(request: ExperimentRequest, basis: Basis) -> AbstractContextManager[Engine]:
     if request.cluster is not None:
-        return cluster_at(request.cluster)
+        return cluster_at(request.cluster, basis)
     return local_workers(request.workers)

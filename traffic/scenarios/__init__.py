@@ -12,6 +12,7 @@ from traffic.scenarios.reading import (
     find_scenario,
     read_scenario,
     scenario_of_configuration,
+    scenario_path,
 )
 
 __all__ = [
@@ -22,4 +23,5 @@ __all__ = [
     "find_scenario",
     "read_scenario",
     "scenario_of_configuration",
+    "scenario_path",
 ]

@@ -34,6 +34,7 @@ __all__ = [
     "find_scenario",
     "read_scenario",
     "scenario_of_configuration",
+    "scenario_path",
 ]
 
 _GZIP = b"\x1f\x8b"
@@ -54,11 +55,20 @@ def find_scenario(name: str, changes: Mapping[str, object] | None = None) -> Sce
     Raises:
         ScenarioError: There is neither, or the file has faults.
     """
+    return read_scenario(scenario_path(name), changes)
+
+
+def scenario_path(name: str) -> Path:
+    """Return the path of the bundled scenario of that name, or *name* as a path.
+
+    Raises:
+        ScenarioError: There is neither.
+    """
     bundled = _bundled_paths()
     if name in bundled:
-        return read_scenario(bundled[name], changes)
+        return bundled[name]
     if name.endswith(".toml") or Path(name).is_file():
-        return read_scenario(Path(name), changes)
+        return Path(name)
     nearest = nearest_name(name, bundled)
     hint = f"; did you mean '{nearest}'?" if nearest else ""
     known = ", ".join(bundled)

@@ -131,7 +131,7 @@ def test_a_failed_run_is_in_the_table_and_in_no_measure(tmp_path: Path) -> None:
     ("changed", "said"),
     [
         ({"design_sha256": "e"}, "the design is not what it was"),
-        ({"versions": {"dyknow-traffic": "2"}}, r"version of dyknow-traffic \(1, now 2\)"),
+        ({"versions": {"dyknow-traffic": "2"}}, r"version of dyknow-traffic \(1, here 2\)"),
         ({"files_sha256": {"f": "1"}}, "the file 'f'"),
         ({"files_sha256": {"f": "0", "g": "0"}}, "the file 'g'"),
         ({"format": 2}, "the format of the folder"),

@@ -10,10 +10,13 @@ from distributed import LocalCluster
 from traffic.errors import ExperimentError
 from traffic.experiments.cases import Case
 from traffic.experiments.engine import cluster_at, local_workers
+from traffic.experiments.folders import Basis
+from traffic.origin import versions
 
 pytestmark = pytest.mark.slow
 
 SHORT = {"view": "truth", "duration": "1 s", "scenario.warm_up": "0 s"}
+BASIS = Basis(design="d", design_sha256="d", versions=versions(), files_sha256={})
 
 
 def case(seed: int, **settings: object) -> Case:
@@ -44,7 +47,7 @@ def test_a_cluster_that_does_not_answer_is_told() -> None:
     """Nobody listens at the address, or it is none."""
     with (
         pytest.raises(ExperimentError, match="no cluster answers at"),
-        cluster_at("tcp://127.0.0.1:9", timeout="1s"),
+        cluster_at("tcp://127.0.0.1:9", BASIS, timeout="1s"),
     ):
         pass
 
@@ -62,6 +65,6 @@ def test_a_cluster_whose_workers_have_threads_is_refused() -> None:
             dashboard_address="127.0.0.1:0",
         ) as cluster,
         pytest.raises(ExperimentError, match="one state per process"),
-        cluster_at(cluster.scheduler_address),
+        cluster_at(cluster.scheduler_address, BASIS),
     ):
         pass
