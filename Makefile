@@ -5,7 +5,7 @@ BIN := .venv/bin
 READY := .venv/.ready
 PACKAGES := anchoring chronicles dyknow networks perception traffic
 
-.PHONY: help setup demo test check fix lock networks figures clean
+.PHONY: help setup demo test check fix lock networks recordings figures clean
 
 help:                ## Show this list
 	@grep -E '^[a-z]+: .*##|^[a-z]+:  +##' $(MAKEFILE_LIST) | sed -E 's/:[^#]*##/\t/' | expand -t 12
@@ -49,6 +49,9 @@ networks: setup      ## Compile the bundled road networks again (needs the extra
 	$(BIN)/traffic network build data/networks/quarter data/networks/quarter/quarter.net.xml --force
 	$(BIN)/traffic network build data/networks/high_street data/networks/high_street/high_street.net.xml --force
 	$(BIN)/traffic network build data/networks/long_road data/networks/long_road/long_road.net.xml --force
+
+recordings: setup    ## Do the runs of the regression suite again and cut new recordings (a quarter of an hour)
+	$(BIN)/traffic regress --remake
 
 figures: setup       ## Make the figures of the README again (an hour; a processor of its own for the last two)
 	$(BIN)/traffic experiment accuracy --out figures/accuracy

@@ -85,7 +85,8 @@ def regress(
         case Task.LIST:
             showing.show_listed(map(listed, request.entries, request.described))
         case Task.UPDATE:
-            showing.show_updated(regressing.update(request.entries))
+            updated = regressing.update(request.entries, request.hints)
+            sys.exit(showing.show_updated(updated))
         case Task.REMAKE:
             showing.show_remade(making.remake(request.makings, folder))
         case Task.ADD if request.addition is not None:

@@ -58,15 +58,19 @@ def show_listed(recordings: Iterable[Listed]) -> None:
     console.print(f"{count} recordings, {seconds:g} s, {size / 1e6:.1f} MB", highlight=False)
 
 
-def show_updated(entries: Iterable[Entry]) -> None:
-    """Print which expectations have changed."""
+def show_updated(regressions: Iterable[Regression]) -> int:
+    """Print which expectations have changed; return the exit status."""
     console = Console(soft_wrap=True)
-    n_changed = 0
-    for entry in entries:
-        console.print(f"changed {escape(str(entry.expected))}", highlight=False)
-        n_changed += 1
-    if not n_changed:
+    counts = Counter[str]()
+    for each in regressions:
+        if each.fault:
+            console.print(f"[red]{escape(each.fault)}[/]", highlight=False)
+        elif each.difference:
+            console.print(f"changed {escape(str(each.entry.expected))}", highlight=False)
+        counts.update(fault=bool(each.fault), changed=bool(each.difference))
+    if not counts["changed"]:
         console.print("nothing has changed")
+    return 2 if counts["fault"] else 0
 
 
 def show_remade(entries: Iterable[tuple[Entry, bool]]) -> None:

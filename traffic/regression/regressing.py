@@ -9,7 +9,7 @@ from pathlib import Path
 from dyknow.kpl.syntax import Specification
 from dyknow.recordings.errors import RecordingError
 from networks.errors import NetworkError
-from traffic.errors import TrafficError
+from traffic.errors import RequestError, TrafficError
 from traffic.recording.rebuilding import describe, open_run, simulation_of, system_of, world_of
 from traffic.regression.cutting import refuse_unfinished
 from traffic.regression.expectations import text_from_result
@@ -79,14 +79,7 @@ def regress(
     """
     system = system or System()
     for entry in entries:
-        began = time.perf_counter()
-        difference: tuple[str, ...] = ()
-        fault = ""
-        try:
-            difference = _difference(entry, system)
-        except (RecordingError, TrafficError, NetworkError, OSError) as error:
-            fault = "; ".join(filter(None, [entry.fault_of(error), (hints or {}).get(entry.name)]))
-        yield Regression(entry, difference, time.perf_counter() - began, fault)
+        yield _compared(entry, system, (hints or {}).get(entry.name, ""))
 
 
 def replayed(path: Path, system: System | None = None) -> RunResult:
@@ -111,21 +104,45 @@ def replayed(path: Path, system: System | None = None) -> RunResult:
         return watch.complete(told_of(said.origin), _ignore, pacer)
 
 
-def update(entries: Iterable[Entry]) -> Iterator[Entry]:
-    """Write down what is recognised now as what is expected; yield those that have changed."""
+def update(
+    entries: Iterable[Entry], hints: Mapping[str, str] | None = None
+) -> Iterator[Regression]:
+    """Replay each recording, and write down what is recognised now as what is expected.
+
+    Args:
+        entries: Of a suite.
+        hints: What to do about a recording that cannot be read, by name.
+    """
     system = System()
     for entry in entries:
+        yield _compared(entry, system, (hints or {}).get(entry.name, ""), is_accepted=True)
+
+
+def _compared(entry: Entry, system: System, hint: str, *, is_accepted: bool = False) -> Regression:
+    """Return what became of a recording, which is expected from now on if it *is_accepted*."""
+    began = time.perf_counter()
+    difference: tuple[str, ...] = ()
+    fault = ""
+    try:
         text = text_from_result(replayed(entry.recording, system))
-        if not entry.expected.exists() or entry.expected.read_text("utf-8") != text:
+        expected = _expected_so_far(entry) if is_accepted else entry.read_expected()
+        names = (str(entry.expected), "now")
+        lines = expected.splitlines(), text.splitlines()
+        difference = tuple(difflib.unified_diff(*lines, *names, n=1, lineterm=""))
+        if difference and is_accepted:
             replace_text(entry.expected, text)
-            yield entry
+    except RequestError as error:
+        fault = str(error)
+    except (RecordingError, TrafficError, NetworkError, OSError) as error:
+        fault = "; ".join(filter(None, [entry.fault_of(error), hint]))
+    return Regression(entry, difference, time.perf_counter() - began, fault)
 
 
-def _difference(entry: Entry, system: System) -> tuple[str, ...]:
-    expected = entry.read_expected().splitlines()
-    found = text_from_result(replayed(entry.recording, system)).splitlines()
-    names = (str(entry.expected), "now")
-    return tuple(difflib.unified_diff(expected, found, *names, n=1, lineterm=""))
+def _expected_so_far(entry: Entry) -> str:
+    try:
+        return entry.read_expected()
+    except RequestError:
+        return ""
 
 
 def _ignore(_done: float, _total: float) -> None:

@@ -40,8 +40,10 @@ class Entry:
 
     def fault_of(self, error: Exception) -> str:
         """Return what is wrong with the recording if using it gave this error."""
-        is_missing = isinstance(error, FileNotFoundError) and not self.recording.exists()
-        return f"there is no '{self.recording}'" if is_missing else str(error)
+        if not self.recording.exists():
+            return f"there is no '{self.recording}'"
+        reason = error.strerror if isinstance(error, OSError) else None
+        return f"{self.recording}: {reason}" if reason else str(error)
 
     def read_expected(self) -> str:
         """Return what is to be recognised.

@@ -24,15 +24,19 @@ def test_what_is_recognised_otherwise_is_told_as_a_diff(recording: Path, tmp_pat
     (same,) = regress([entry])
     entry.expected.write_text("".join([*lines[:-1], "  1.0  2.0  flight[car1]\n"]))
     (different,) = regress([entry])
-    changed = list(update([entry]))
+    (changed,) = update([entry])
 
     assert (same.difference, same.fault) == ((), "")
     assert "overtake[" in text
     assert "-  1.0  2.0  flight[car1]" in different.difference
     assert f"+{lines[-1].rstrip()}" in different.difference
-    assert changed == [entry]
+    assert changed.difference == different.difference
     assert entry.read_expected() == text
-    assert list(update([entry])) == []
+    (unchanged,) = update([entry])
+    assert unchanged.difference == ()
+    entry.expected.write_bytes(b"\xff")
+    list(update([entry]))
+    assert entry.read_expected() == text
 
 
 def test_recordings_are_replayed_with_other_settings(recording: Path, tmp_path: Path) -> None:
