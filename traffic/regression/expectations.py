@@ -45,7 +45,10 @@ def text_from_result(result: RunResult) -> str:
     that was certain, and what the truth says about it. Reckless drivers and processes that failed
     come last.
     """
-    settings = ", ".join(f"{k} {v}" for k, v in result.settings.items() if v is not None)
+    known = {k: v for k, v in result.settings.items() if v is not None}
+    settings = ", ".join(
+        f"{k} {v:g}" if isinstance(v, float) else f"{k} {v}" for k, v in known.items()
+    )
     lines = [f"{result.scenario}: {settings}", *sorted(_lines(result))]
     lines += [_reckless(each) for each in result.reckless_drivers or ()]
     return "\n".join([*lines, *result.failures]) + "\n"
