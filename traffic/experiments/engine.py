@@ -14,6 +14,7 @@ from typing import Any
 import dask
 from distributed import Client, Future, KilledWorker, LocalCluster, wait
 from distributed.client import FuturesCancelledError
+from distributed.comm.addressing import resolve_address
 
 from traffic.bundled import data_folder
 from traffic.errors import ExperimentError
@@ -137,8 +138,9 @@ def cluster_at(address: str, basis: Basis, timeout: str = _SECONDS) -> Iterator[
     """
     with _quiet():
         try:
+            resolve_address(address)
             client = Client(address, timeout=timeout, set_as_default=False)
-        except (OSError, ValueError, TypeError) as error:
+        except Exception as error:  # whatever it is that answers may make anything happen
             fault = f"--cluster: no cluster answers at '{address}': {error}"
             raise ExperimentError(fault) from error
         with client:
@@ -149,14 +151,22 @@ def cluster_at(address: str, basis: Basis, timeout: str = _SECONDS) -> Iterator[
 @contextmanager
 def _quiet() -> Iterator[None]:
     """Keep the engine's own reports from the screen while the block lasts."""
-    logger = logging.getLogger("distributed")
-    level = logger.level
-    logger.setLevel(logging.CRITICAL)
+    levels = {each: each.level for each in _loggers()}
+    for logger in levels:
+        logger.setLevel(logging.CRITICAL)
     try:
         with dask.config.set(_SETTINGS):
             yield
     finally:
-        logger.setLevel(level)
+        for logger, level in levels.items():
+            logger.setLevel(level)
+
+
+def _loggers() -> list[logging.Logger]:
+    """Return the loggers of the engine; those of its parts have levels of their own."""
+    known = logging.root.manager.loggerDict.values()
+    loggers = [each for each in known if isinstance(each, logging.Logger)]
+    return [each for each in loggers if each.name.split(".")[0] == "distributed"]
 
 
 def _check(client: Client, address: str, basis: Basis) -> None:

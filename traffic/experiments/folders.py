@@ -106,25 +106,35 @@ class ExperimentFolder:
         """The measures of all cells; there when all are done."""
         return self.path / "cells.csv"
 
+    def forbid_another(self) -> None:
+        """Make sure that an experiment may be begun.
+
+        Raises:
+            ExperimentError: The folder holds one, or something else.
+        """
+        if self.is_there:
+            fault = f"'{self.path}' exists already; --resume goes on with what is there"
+            raise ExperimentError(fault)
+        if not self.path.exists():
+            return
+        if not self.path.is_dir():
+            raise ExperimentError(f"--out: expected a folder, found the file '{self.path}'")
+        if strange := sorted({each.name for each in self.path.iterdir()} - self._own):
+            found = f"'{self.path}' with '{strange[0]}' in it"
+            raise ExperimentError(f"--out: expected a new or empty folder, found {found}")
+
     def begin(self, design: Path, basis: Basis) -> None:
         """Make the folder; one that is empty, or where this was begun and not done, will do.
 
         Raises:
             ExperimentError: There is something else already, or it cannot be made.
         """
-        self._forbid_another()
         try:
             self.path.mkdir(parents=True, exist_ok=True)
-            if strange := sorted({each.name for each in self.path.iterdir()} - self._own):
-                found = f"'{self.path}' with '{strange[0]}' in it"
-                raise ExperimentError(f"--out: expected a new or empty folder, found {found}")
             with self.locked():
-                self._forbid_another()
+                self.forbid_another()
                 write_whole(self.design, design.read_bytes())
                 write_whole(self._basis_file, basis.model_dump_json(indent=1).encode() + b"\n")
-        except FileExistsError as error:
-            fault = f"--out: expected a folder, found the file '{self.path}'"
-            raise ExperimentError(fault) from error
         except OSError as error:
             raise ExperimentError(f"cannot write to '{self.path}': {error.strerror}") from error
 
@@ -195,11 +205,6 @@ class ExperimentFolder:
             except BlockingIOError as error:
                 raise ExperimentError(f"another program is at work in '{self.path}'") from error
             yield
-
-    def _forbid_another(self) -> None:
-        if self.is_there:
-            fault = f"'{self.path}' exists already; --resume goes on with what is there"
-            raise ExperimentError(fault)
 
     @property
     def _own(self) -> set[str]:

@@ -60,9 +60,12 @@ def run_experiment(request: ExperimentRequest, on_progress: OnProgress) -> Exper
     if request.resume:
         folder.resume(basis)
     else:
-        folder.begin(request.design, basis)
-    with folder.locked(), _engine(request, basis) as engine:
-        conduct(design, folder, engine, on_progress)
+        folder.forbid_another()
+    with _engine(request, basis) as engine:
+        if not request.resume:
+            folder.begin(request.design, basis)
+        with folder.locked():
+            conduct(design, folder, engine, on_progress)
     return read_experiment(request.folder, design)
 
 
