@@ -4,10 +4,9 @@ The simulator has one state per process, and two threads of one process would di
 without an error. So a worker has one thread, and a cluster whose workers have more is refused.
 """
 
-import logging
 import os
 from collections.abc import Collection, Iterable, Iterator
-from contextlib import contextmanager
+from contextlib import AbstractContextManager, contextmanager
 from pathlib import Path
 from typing import Any
 
@@ -18,6 +17,7 @@ from distributed.comm.addressing import resolve_address
 
 from traffic.bundled import data_folder
 from traffic.errors import ExperimentError
+from traffic.experiments import preparing
 from traffic.experiments.cases import Case, Outcome, run_case
 from traffic.experiments.folders import Basis
 from traffic.origin import digest_of, versions
@@ -40,7 +40,6 @@ _SETTINGS = {
     "distributed.scheduler.allowed-failures": 3,
     "distributed.worker.memory.terminate": False,
     "distributed.admin.tick.limit": "1h",
-    "logging.distributed": "critical",
 }
 
 
@@ -108,7 +107,7 @@ class Engine:
 def local_workers(number: int) -> Iterator[Engine]:
     """Give an engine with so many processes of this machine while the block lasts."""
     with (
-        _quiet(),
+        _settings(),
         LocalCluster(
             n_workers=number,
             threads_per_worker=1,
@@ -116,6 +115,7 @@ def local_workers(number: int) -> Iterator[Engine]:
             host="127.0.0.1",
             dashboard_address="127.0.0.1:0",
             memory_limit=0,
+            preload=[preparing.__name__],
             env={"OPENCV_FOR_THREADS_NUM": "1"},
         ) as cluster,
         Client(cluster) as client,
@@ -136,7 +136,7 @@ def cluster_at(address: str, basis: Basis, timeout: str = _SECONDS) -> Iterator[
         ExperimentError: The cluster does not answer, has no workers, has workers with more than
             one thread, or has other versions of this program or of the files that runs read.
     """
-    with _quiet():
+    with _settings():
         try:
             resolve_address(address)
             client = Client(address, timeout=timeout, set_as_default=False)
@@ -148,25 +148,11 @@ def cluster_at(address: str, basis: Basis, timeout: str = _SECONDS) -> Iterator[
             yield Engine(client)
 
 
-@contextmanager
-def _quiet() -> Iterator[None]:
-    """Keep the engine's own reports from the screen while the block lasts."""
-    levels = {each: each.level for each in _loggers()}
-    for logger in levels:
-        logger.setLevel(logging.CRITICAL)
-    try:
-        with dask.config.set(_SETTINGS):
-            yield
-    finally:
-        for logger, level in levels.items():
-            logger.setLevel(level)
-
-
-def _loggers() -> list[logging.Logger]:
-    """Return the loggers of the engine; those of its parts have levels of their own."""
-    known = logging.root.manager.loggerDict.values()
-    loggers = [each for each in known if isinstance(each, logging.Logger)]
-    return [each for each in loggers if each.name.split(".")[0] == "distributed"]
+def _settings() -> AbstractContextManager[object]:
+    """Silence the engine; give what sets it up while a block lasts."""
+    preparing.silence()
+    context: AbstractContextManager[object] = dask.config.set(_SETTINGS)
+    return context
 
 
 def _check(client: Client, address: str, basis: Basis) -> None:
