@@ -39,11 +39,16 @@ _ENOUGH = 100
 
 @contextmanager
 def experiment_progress() -> Iterator[OnProgress]:
-    """Give a function to call with how far an experiment has come, shown on a terminal."""
-    columns = (TextColumn("running"), BarColumn(), TextColumn("{task.fields[told]}"))
-    console = Console(stderr=True)
-    with Bar(*columns, console=console, disable=not sys.stderr.isatty()) as bar:
-        task = bar.add_task("", told="")
+    """Give a function to call with how far an experiment has come.
+
+    On a terminal it is shown as a bar, elsewhere as a line of text for each tenth that is done.
+    """
+    if not sys.stderr.isatty():
+        yield _Lines().tell
+        return
+    columns = (BarColumn(), TextColumn("{task.fields[told]}"))
+    with Bar(*columns, console=Console(stderr=True)) as bar:
+        task = bar.add_task("", told="starting")
 
         def on_progress(progress: Progress) -> None:
             bar.update(task, completed=progress.done, total=progress.total, told=_told(progress))
@@ -107,15 +112,26 @@ def share_text(share: Share) -> str:
     return f"{share.value:.1%} [dim]({100 * low:.0f}–{100 * high:.0f})[/]"
 
 
+class _Lines:
+    """Tells in lines how far an experiment has come."""
+
+    def __init__(self) -> None:
+        self._tenths = 0
+
+    def tell(self, progress: Progress) -> None:
+        tenths = 10 * progress.done // progress.total
+        if tenths > self._tenths:
+            self._tenths = tenths
+            sys.stderr.write(f"{_told(progress)}\n")
+
+
 def _told(progress: Progress) -> str:
     failed = f", {progress.failed} failed" if progress.failed else ""
     left = progress.seconds_left
     time_left = "" if left is None else f", {_time(left)} left"
-    rate = "" if progress.rate is None else f", {progress.rate:.1f} a second"
-    return (
-        f"{progress.done} of {progress.total} done{failed}, {progress.running} running"
-        f"{rate}{time_left}"
-    )
+    rate = "" if progress.rate is None else f", {progress.rate:.1f}/s"
+    done = f"{progress.done} of {progress.total} done"
+    return f"{done}{failed}, {progress.running} running{rate}{time_left}"
 
 
 def _time(seconds: float) -> str:

@@ -147,6 +147,7 @@ def run_case(case: Case) -> Outcome:
         ExperimentError: There is no room left to write the run, which may be done again later.
     """
     began = time.perf_counter()
+    folder = ""
     try:
         with tempfile.TemporaryDirectory(prefix="traffic-") as folder:
             result, _ = run_scenario(request_of(case, Path(folder) / "run"), _ignore)
@@ -158,6 +159,8 @@ def run_case(case: Case) -> Outcome:
                 f"{fault}; the runs before are safe, --resume does the others"
             ) from error
         text = f"{type(error).__name__}: {error}"
+        if folder:  # its name is another one each time
+            text = text.replace(folder, "TEMPORARY")
         return Outcome(case.key, case.cell, case.seed, {}, text, time.perf_counter() - began)
     counts = {
         kind: Counts(score.truth, score.recognised, score.correct)

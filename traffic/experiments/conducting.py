@@ -30,7 +30,8 @@ class Progress:
         failed: How many of these failed.
         running: Workers that are at work.
         total: Runs in all.
-        rate: Runs in a second, since it was begun or resumed; None before the first.
+        rate: Runs in a second, since the first one was finished after it was begun or resumed;
+            None until then, because workers that begin are slow.
     """
 
     done: int
@@ -61,14 +62,17 @@ def conduct(
     outcomes = folder.outcomes()
     failed = sum(outcome.error is not None for outcome in outcomes.values())
     missing = (case for case in cases_of(design) if case.key not in outcomes)
-    began, before = time.perf_counter(), len(outcomes)
+    first: float | None = None
+    since = 0
     with Journal(folder.journal) as journal:
         for outcome in engine.outcomes(missing):
             journal.append(outcome.as_line())
             outcomes[outcome.key] = outcome
             failed += outcome.error is not None
-            done = len(outcomes)
-            rate = (done - before) / (time.perf_counter() - began)
+            done, now = len(outcomes), time.perf_counter()
+            rate = None if first is None else (done - since) / (now - first)
+            if first is None:
+                first, since = now, done
             running = min(engine.n_workers, design.n_runs - done)
             on_progress(Progress(done, failed, running, design.n_runs, rate))
     finish(design, folder, outcomes)

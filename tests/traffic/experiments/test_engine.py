@@ -52,6 +52,40 @@ def test_a_cluster_that_does_not_answer_is_told() -> None:
         pass
 
 
+@pytest.mark.parametrize("address", ["127.0.0.1", "foo://bar"])
+def test_an_address_that_is_none_is_told_at_once(address: str) -> None:
+    """Nothing is waited for."""
+    with pytest.raises(ExperimentError, match="no cluster answers at"), cluster_at(address, BASIS):
+        pass
+
+
+@pytest.mark.filterwarnings("ignore::DeprecationWarning", "ignore::ResourceWarning")
+@pytest.mark.parametrize(
+    ("changed", "said"),
+    [
+        ({"versions": {**versions(), "numpy": "0.1"}}, r"the version of numpy \(.*, here 0\.1\)"),
+        ({"files_sha256": {"/nowhere/x.toml": "0"}}, r"the file '/nowhere/x\.toml'"),
+    ],
+)
+def test_a_cluster_with_other_versions_or_files_is_refused(
+    changed: dict[str, object], said: str
+) -> None:
+    """Its runs would not be those of this machine."""
+    with (
+        LocalCluster(
+            n_workers=1,
+            threads_per_worker=1,
+            processes=False,
+            protocol="tcp",
+            host="127.0.0.1",
+            dashboard_address="127.0.0.1:0",
+        ) as cluster,
+        pytest.raises(ExperimentError, match=said),
+        cluster_at(cluster.scheduler_address, BASIS.model_copy(update=changed)),
+    ):
+        pass
+
+
 @pytest.mark.filterwarnings("ignore::DeprecationWarning", "ignore::ResourceWarning")
 def test_a_cluster_whose_workers_have_threads_is_refused() -> None:
     """The simulator has one state per process; the message says so."""

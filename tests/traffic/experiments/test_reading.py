@@ -39,6 +39,7 @@ def test_the_bundled_designs_are_possible() -> None:
         assert design.description
         assert checked.simulated_seconds > 0
         assert len(checked.files) >= 3
+        assert any(each.parent.name == "scenarios" for each in checked.files)
 
 
 @pytest.mark.parametrize(
@@ -48,6 +49,10 @@ def test_the_bundled_designs_are_possible() -> None:
         ("[0, 4]", '[0, "much"]', ":8:1: position_noise: expected a number of metres"),
         ("[0, 4]", "[0, -4]", ":8:1: --position-noise: expected a number of metres, at least 0"),
         ("[0, 4]", "[0, 0]", ":8:1: 'position_noise' has a level twice"),
+        ("[0, 4]", "[0, nan]", ":8:1: expected a number, a text, or true or false, found nan"),
+        ("[0, 4]", "[[1]]", ":8:1: expected a number, a text, or true or false, found [1]"),
+        ("[0, 4]", "4", ":8:1: expected an array, found 4"),
+        ('"truth"', '["truth"]', ":5:1: expected a number, a text, or true or false"),
         ("[0, 4]", "[]", ":8:1: expected at least one item"),
         ("[0, 4]", "{ from = 0, to = 4 }", ":8:1: a range of levels needs the table 'sampling'"),
         (".gap", ".gp", ":9:1: no setting of 'CarRelations' called 'gp'"),
