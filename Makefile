@@ -53,9 +53,12 @@ networks: setup      ## Compile the bundled road networks again (needs the extra
 recordings: setup    ## Do the runs of the regression suite again and cut new recordings (a quarter of an hour)
 	$(BIN)/traffic regress --remake
 
-figures: setup       ## Make the figures of the README again (an hour; a processor of its own for the last two)
+figures: setup       ## Make the figures of the README again (four hours; a processor of its own for the last two)
 	$(BIN)/traffic experiment accuracy --out figures/accuracy
 	$(BIN)/traffic experiment library --out figures/library
+	for design in table-8.2-seed table-8.2 look-alikes table-8.2-beyond table-8.2-dropout table-8.2-delay; do \
+	  $(BIN)/traffic experiment $$design --out figures/$$design || exit 1; done
+	$(BIN)/traffic report table-8.2-published figures/table-8.2-seed figures/table-8.2 --html figures/table-8.2.html
 	taskset -c 0 $(BIN)/traffic run crossing --out figures/crossing
 	taskset -c 0 $(BIN)/traffic benchmark chronicles --out figures/chronicles
 

@@ -33,14 +33,16 @@ class LinkSettings:
         establish: When a lower object is linked to a new upper one; may mention `from`.
         reestablish: When it is linked to a known upper one; may mention `from` and `to`.
         maintain: What must go on holding for the link to stay; may mention `from` and `to`.
-        remove_after: For how long an upper object may be unanchored before it is given up; it is
-            looked for in five states at least.
+        remove_after: For how long an upper object may be unanchored before it is given up.
+        least_states: In how many states at least it is looked for before that, however seldom
+            there are any.
     """
 
     establish: Formula
     reestablish: Formula
     maintain: Formula
     remove_after: Duration
+    least_states: int = 1
 
 
 class LinkEnd(StrEnum):

@@ -16,7 +16,6 @@ is followed by its maintain condition. What the sources leave open is settled as
   once if the upper object is there still and without a link: nothing has refuted it. One that
   waited for its establish condition goes on waiting, as it was seen last, for as long as an
   upper object would; it is linked when it is observed.
-- Neither is given up before it has been looked for in a few states, however seldom there are any.
 """
 
 from collections.abc import Iterable
@@ -47,9 +46,6 @@ _NO_ONE = -1
 _NEVER = -1
 """As the number of a state: there was none yet."""
 
-_FEWEST_STATES = 5
-"""In so many states an object that is not there is looked for at least."""
-
 
 class LinkProcess(Reactive):
     """A computational unit from tables of lower objects to tables of upper objects.
@@ -69,6 +65,7 @@ class LinkProcess(Reactive):
         self.history = LinkHistory()
         self._unit = unit
         self._remove_after = settings.remove_after
+        self._least_states = settings.least_states
         self._waiting = _Waiting(Condition(settings.establish, unit))
         self._standing = _Standing(Condition(settings.maintain, unit))
         self._candidates = Candidates(Condition(settings.reestablish, unit), unit)
@@ -221,7 +218,7 @@ class LinkProcess(Reactive):
     def _may_return(self, seen_at: Ids, seen_in: Ids, now: TimePoint) -> Mask:
         """Return which objects, seen last at that time and in that state, may come back."""
         recent: Mask = now - seen_at < self._remove_after
-        recent |= self._step - seen_in < _FEWEST_STATES
+        recent |= self._step - seen_in < self._least_states
         return recent
 
 

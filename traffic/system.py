@@ -217,6 +217,11 @@ class _Links:
             raise ValueError(f"a link process has no setting '{unknown[0]}'")
         if "remove_after" not in settings:
             raise ValueError("a link process needs the setting 'remove_after'")
+        least = settings.get("least_states", 1)
+        if not isinstance(least, int) or least < 1:
+            raise ValueError(
+                f"expected 'least_states' to be a whole number of at least 1: {least}"
+            )
         conditions = LinkSettings(establish, reestablish, maintain, **settings)
         process = LinkProcess(self._unit(unit), conditions)
         self._histories.append(process.history)

@@ -110,7 +110,10 @@ class NaiveLinks:
 
     def _is_lost(self, known, now) -> bool:
         """Whether something known by (.., .., when, in which state) has been away too long."""
-        return now - known[2] >= self.settings.remove_after and self.number - known[3] >= 5
+        return (
+            now - known[2] >= self.settings.remove_after
+            and self.number - known[3] >= self.settings.least_states
+        )
 
     def _resume(self, usable) -> None:
         """Make the links again whose lower objects are back."""

@@ -15,12 +15,13 @@ from dyknow.time import milliseconds
 from tests.anchoring.naive_links import FlatUnit, NaiveLinks
 
 
-def _settings(establish, reestablish, maintain, remove_after=2000):
+def _settings(establish, reestablish, maintain, remove_after=2000, least_states=1):
     return LinkSettings(
         establish=parse_formula(establish),
         reestablish=parse_formula(reestablish),
         maintain=parse_formula(maintain),
         remove_after=milliseconds(remove_after),
+        least_states=least_states,
     )
 
 
@@ -93,16 +94,16 @@ _scenario = st.lists(st.tuples(st.sampled_from([100, 100, 170, 450]), _seen), ma
     st.sampled_from(ESTABLISH),
     st.sampled_from(REESTABLISH),
     st.sampled_from(MAINTAIN),
-    st.sampled_from([300, 1000, 5000]),
+    st.sampled_from([(300, 1), (300, 4), (1000, 1), (5000, 2)]),
     st.booleans(),
 )
 def test_all_at_once_does_what_one_at_a_time_does(
-    scenario, establish, reestablish, maintain, remove_after, trusts
+    scenario, establish, reestablish, maintain, patience, trusts
 ):
     """Links, symbols and states are those of the definition, object by object and all pairs."""
     rng = np.random.default_rng(len(scenario))
     condition, gate = reestablish
-    chosen = _settings(establish, condition, maintain, remove_after)
+    chosen = _settings(establish, condition, maintain, *patience)
     process = LinkProcess(FlatUnit(trusts_predictions=trusts), chosen)
     naive = NaiveLinks(chosen, gate, trusts_predictions=trusts)
     time = 0
@@ -246,7 +247,7 @@ def test_who_comes_back_under_its_own_name_takes_up_its_link():
 
 def test_an_object_is_looked_for_in_a_few_states_however_seldom_they_are():
     """It is given up in the fifth state without it if its time is over by then."""
-    process = LinkProcess(FlatUnit(), _settings("true", "false", "true", 300))
+    process = LinkProcess(FlatUnit(), _settings("true", "false", "true", 300, 5))
     _push(process, 100, {1: ((0, 0), False, True)})
 
     left = [len(_push(process, 100 + 1000 * k, {})) for k in range(1, 6)]
