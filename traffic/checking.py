@@ -14,8 +14,9 @@ from dyknow.kpl.parser import read_specification
 from dyknow.mtl.declarations import document_faults
 from dyknow.mtl.parser import parse_document
 from dyknow.source_text import Span
-from traffic.errors import ExperimentError, RequestError, ScenarioError
+from traffic.errors import ExperimentError, RegressionError, RequestError, ScenarioError
 from traffic.experiments.reading import check_design, read_design
+from traffic.regression.manifest import read_makings
 from traffic.scenarios import read_scenario
 from traffic.scenarios.toml_files import read_toml
 
@@ -29,7 +30,8 @@ def faults_of_file(path: Path) -> list[str]:
     """Return a text for each fault of the file, beginning with its place.
 
     The ending of the name says what it is: `.kpl`, `.chronicle`, `.mtl` (a formula) or `.toml` (a
-    scenario, or a design of experiments). That a file cannot be read is its only fault then.
+    scenario, a design of experiments, or how the recordings of a suite are made). That a file
+    cannot be read is its only fault then.
 
     Raises:
         RequestError: The ending is none of these.
@@ -62,13 +64,16 @@ def warnings_of_file(path: Path) -> list[str]:
 
 
 def _faults_of_toml(path: Path) -> list[str]:
-    """Return the faults of a design, if the file asks for measures, or else of a scenario."""
+    """Return the faults of a design (it has measures), a suite (recordings), or a scenario."""
     try:
-        if "measures" in read_toml(path, ScenarioError)[1]:
+        keys = read_toml(path, ScenarioError)[1].keys()
+        if "measures" in keys:
             check_design(path, read_design(path))
+        elif "recordings" in keys:
+            read_makings(path)
         else:
             read_scenario(path)
-    except (ExperimentError, ScenarioError) as error:
+    except (ExperimentError, RegressionError, ScenarioError) as error:
         return list(error.faults)
     return []
 

@@ -111,3 +111,13 @@ def test_chronicles_are_warned_of(tmp_path):
             " limits how long after 't1' 't2' can be"
         ),
     ]
+
+
+def test_a_suite_is_told_by_its_recordings(tmp_path):
+    """What the text beside recordings says of them is checked, whatever the file is called."""
+    path = tmp_path / "mine.toml"
+    path.write_text('[[recordings]]\nname = "x"\nfrom = "1 s"\nto = "2 s"\nsed = 3\n')
+
+    (fault,) = faults_of_file(path)
+
+    assert fault.startswith(f"{path}:5:1: no key called 'sed' here; did you mean 'seed'?")

@@ -36,7 +36,7 @@ from traffic.request import RunRequest
 from traffic.scenarios.places import KeyPath
 from traffic.scenarios.toml_files import faults_of, message_of, read_toml
 
-__all__ = ["Making", "Manifest", "read_manifest", "text_from_making"]
+__all__ = ["Making", "Manifest", "read_makings", "read_manifest", "text_from_making"]
 
 _FILE = "suite.toml"
 
@@ -130,8 +130,15 @@ def read_manifest(folder: Path) -> Manifest:
         RegressionError: The file cannot be read or has faults; all of them are named.
     """
     path = folder / _FILE
-    if not path.exists():
-        return Manifest(folder, ())
+    return Manifest(folder, read_makings(path) if path.exists() else ())
+
+
+def read_makings(path: Path) -> tuple[Making, ...]:
+    """Return what a file says about the recordings beside it.
+
+    Raises:
+        RegressionError: The file cannot be read or has faults; all of them are named.
+    """
     source, values = read_toml(path, RegressionError)
     try:
         makings = _File.model_validate(values).recordings
@@ -142,7 +149,7 @@ def read_manifest(folder: Path) -> Manifest:
         raise RegressionError(*faults_of(found, source)) from error
     if faults := faults_of(_repeated(makings), source):
         raise RegressionError(*faults)
-    return Manifest(folder, makings)
+    return makings
 
 
 def text_from_making(making: Making) -> str:
