@@ -1,6 +1,7 @@
 """The command line: collects the commands and turns errors into messages.
 
-Exit status: 0 done, 1 a bug, 2 the user's input is at fault, 130 interrupted, 143 terminated.
+Exit status: 0 done, 1 a bug or what the help of a command says, 2 the user's input is at fault,
+130 interrupted, 143 terminated.
 """
 
 import signal

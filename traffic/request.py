@@ -7,7 +7,7 @@ from enum import StrEnum
 from pathlib import Path
 from typing import Any
 
-from dyknow.time import MILLISECOND, Duration, duration_from_text
+from dyknow.time import MILLISECOND, SECOND, Duration, duration_from_text
 from traffic.errors import RequestError
 from traffic.scenarios import CameraSettings, Scenario, find_scenario, scenario_of_configuration
 from traffic.settings import SCENARIO
@@ -129,6 +129,11 @@ class RunRequest:
     longest_frame_period: Duration = FRAME_PERIOD
     recognise: tuple[str, ...] | None = None
     changes: Mapping[str, object] = field(default_factory=dict)
+
+    @property
+    def simulated_seconds(self) -> float:
+        """How long the run is, with its warm-up."""
+        return (self.scenario.warm_up + self.scenario.duration) / SECOND
 
     @classmethod
     def from_settings(

@@ -2,9 +2,10 @@
 
 from collections.abc import Collection, Iterator
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from pathlib import Path
 
+from dyknow.errors import SpecificationErrors
 from dyknow.inspection.taking import snapshot
 from dyknow.kpl.names import Declarations
 from dyknow.kpl.plan import Network
@@ -13,9 +14,9 @@ from dyknow.kpl.syntax import Specification
 from dyknow.source_text import nearest_name
 from dyknow.streams.sample import Sample
 from dyknow.streams.table import Table
-from dyknow.time import MILLISECOND, SECOND
+from dyknow.time import MILLISECOND
 from perception.camera import Camera
-from traffic.errors import RequestError
+from traffic.errors import RequestError, TrafficError
 from traffic.explaining.keeping import explanations_kept
 from traffic.origin import origin_of, write_origin
 from traffic.overlaying import Overlay
@@ -42,6 +43,7 @@ from traffic.world import World, camera_of, generators_of, road_map_at
 
 __all__ = [
     "CheckedRequest",
+    "RequestChecks",
     "check_request",
     "outputs_recognising",
     "run_scenario",
@@ -100,12 +102,10 @@ class CheckedRequest:
     """What is known of a run before it begins.
 
     Attributes:
-        simulated_seconds: How long it is, with its warm-up.
         files: That it reads: the network, the specification, chronicles.
         kinds: Of manoeuvres that it scores.
     """
 
-    simulated_seconds: float
     files: tuple[Path, ...]
     kinds: tuple[str, ...]
 
@@ -124,12 +124,46 @@ def check_request(request: RunRequest) -> CheckedRequest:
     world = World(road_map, _NoVehicles(), camera, generators_of(request.seed)[1])
     system = _system(request, _specification(request), world)
     specification = request.specification or bundled_specification()
-    scenario = request.scenario
     return CheckedRequest(
-        simulated_seconds=(scenario.warm_up + scenario.duration) / SECOND,
         files=(network, specification, *system.files),
         kinds=lines_scored(system.chronicles),
     )
+
+
+class RequestChecks:
+    """Checks many runs as `check_request` does, but those that are alike to it only once.
+
+    They are if they differ in nothing but their seeds, their folders, and what the simulator alone
+    is told. It is for runs that are checked at one time: a file that changes is not read again.
+    """
+
+    def __init__(self) -> None:
+        self._found: dict[str, CheckedRequest | TrafficError | SpecificationErrors] = {}
+
+    def check(self, request: RunRequest) -> CheckedRequest:
+        """Find out whether a run is possible; see `check_request`."""
+        key = _what_is_checked(request)
+        if key not in self._found:
+            try:
+                self._found[key] = check_request(request)
+            except (TrafficError, SpecificationErrors) as error:
+                self._found[key] = error
+        found = self._found[key]
+        if isinstance(found, CheckedRequest):
+            return found
+        raise found
+
+
+def _what_is_checked(request: RunRequest) -> str:
+    """Return a text that tells runs apart whose checks may differ."""
+    others = {"scenario", "seed", "out"}
+    told = {
+        each.name: getattr(request, each.name)
+        for each in fields(request)
+        if each.name not in others
+    }
+    scenario = request.scenario
+    return repr((network_of(scenario), scenario.camera, scenario.recognise, told))
 
 
 @contextmanager

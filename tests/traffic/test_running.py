@@ -18,7 +18,7 @@ from traffic.bundled import data_folder
 from traffic.errors import RequestError, ResultError
 from traffic.request import RunRequest
 from traffic.results import read_result
-from traffic.running import check_request, run_scenario
+from traffic.running import RequestChecks, check_request, run_scenario
 from traffic.system import (
     MonitoringSystem,
     bundled_specification,
@@ -201,6 +201,33 @@ def test_only_what_is_to_be_recognised_is_scored():
     assert [path.name for path in one.files if path.suffix == ".chronicle"] == [
         "signals.chronicle"
     ]
+
+
+def test_runs_that_are_alike_to_a_check_are_checked_once():
+    """What the simulator alone is told is not checked; all else makes another check."""
+    checks = RequestChecks()
+    asked = {"scenario": "crossing", "view": "truth"}
+
+    def check(**others):
+        return checks.check(RunRequest.from_texts(**asked | others))
+
+    one = check()
+
+    assert check(seed=7, duration="9 s", out=Path("x")) is one
+    assert check(changes={"scenario.warm_up": "3 s"}) is one
+    for others in (
+        {"recognise": "signals"},
+        {"position_noise": 1.0},
+        {"sample_period": "200"},
+        {"changes": {"stability": 500}},
+        {"changes": {"scenario.recognise": ["signals"]}},
+        {"scenario": "rural"},
+        {"view": "vision"},
+    ):
+        assert check(**others) is not one, others
+    for _ in range(2):
+        with pytest.raises(RequestError, match="overtaks"):
+            check(recognise="overtaks")
 
 
 def test_what_cannot_be_recognised_is_refused():

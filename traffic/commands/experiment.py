@@ -37,7 +37,10 @@ def experiment(
         bool, typer.Option("--json", help="Print one JSON document instead of tables.")
     ] = False,
 ) -> None:
-    """Do all runs of a design, on processes of this machine or on a cluster, and measure them."""
+    """Do all runs of a design, on processes of this machine or on a cluster, and measure them.
+
+    Exit status: 0 done, 1 all runs failed, 2 the design or an option is at fault.
+    """
     from traffic.commands.showing_experiments import (
         experiment_progress,
         show_designs,
@@ -64,3 +67,6 @@ def experiment(
     else:
         show_experiment(found)
     sys.stderr.write(f"experiment written to {request.folder}\n")
+    if found.has_failed:
+        sys.stderr.write("traffic: all runs failed, so nothing was measured\n")
+        sys.exit(1)

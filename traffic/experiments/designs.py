@@ -29,6 +29,7 @@ from typing import Annotated, Self
 
 import numpy as np
 from pydantic import (
+    AfterValidator,
     BaseModel,
     BeforeValidator,
     ConfigDict,
@@ -116,12 +117,19 @@ class Sampling(_Table):
     seed: Annotated[int, Field(ge=0)] = 1
 
 
+def _not_empty(levels: tuple[Level, ...]) -> tuple[Level, ...]:
+    """Return levels if there are any; those that are at fault count as well."""
+    if not levels:
+        raise ValueError("expected at least one level, found none")
+    return levels
+
+
 def _shape(value: object) -> str:
     return "range" if isinstance(value, dict | LevelRange) else "list"
 
 
 Levels = Annotated[
-    Annotated[tuple[Level, ...], Field(min_length=1), Tag("list")]
+    Annotated[tuple[Level, ...], AfterValidator(_not_empty), Tag("list")]
     | Annotated[LevelRange, Tag("range")],
     Discriminator(_shape),
 ]

@@ -1,6 +1,7 @@
 """Finds and reads designs, and says everything that is wrong with one before anything runs."""
 
 from collections.abc import Iterator
+from dataclasses import dataclass
 from pathlib import Path
 
 from pydantic import ValidationError
@@ -12,7 +13,9 @@ from traffic.errors import ExperimentError, TrafficError
 from traffic.experiments.cases import Case, request_of, scenario_file
 from traffic.experiments.designs import Cell, Design, Level, LevelRange, Sampling
 from traffic.experiments.measures import kind_of
-from traffic.running import CheckedRequest, check_request
+from traffic.experiments.trials import trials_of
+from traffic.request import RunRequest
+from traffic.running import CheckedRequest, RequestChecks
 from traffic.scenarios.places import KeyPath
 from traffic.scenarios.toml_files import faults_of, message_of, read_toml
 
@@ -66,57 +69,61 @@ def read_design(path: Path, folder: Path | None = None) -> Design:
     try:
         design = Design.model_validate({**where, **values})
     except ValidationError as error:
-        found = dict.fromkeys(
-            (message_of(each, _known_keys), each["loc"]) for each in error.errors()
-        )
-        raise ExperimentError(*faults_of(found, source)) from error
+        found = [(message_of(each, _known_keys), each["loc"]) for each in error.errors()]
+        raise ExperimentError(*dict.fromkeys(faults_of(found, source))) from error
     if faults := faults_of(_contradictions(design), source):
         raise ExperimentError(*faults)
     return design
 
 
+@dataclass(frozen=True, slots=True)
 class CheckedDesign:
     """A design of which every setting has been found possible.
 
-    Args:
+    Attributes:
         design: The design.
-        checked: What was found out about some of its runs, of which each level is in one.
-        scenarios: The files of the scenarios.
+        files: That its runs read.
+        simulated_seconds: How long its runs are in all.
     """
 
-    def __init__(
-        self, design: Design, checked: tuple[CheckedRequest, ...], scenarios: tuple[Path, ...]
-    ) -> None:
-        self.design = design
-        others = (file for each in checked for file in each.files)
-        self.files = tuple(dict.fromkeys([*scenarios, *others]))
-        seconds = [each.simulated_seconds for each in checked]
-        self.simulated_seconds = sum(seconds) / len(seconds) * design.n_runs
+    design: Design
+    files: tuple[Path, ...]
+    simulated_seconds: float
 
 
 def check_design(path: Path, design: Design) -> CheckedDesign:
     """Find out whether every level of every factor is possible; nothing is simulated.
 
-    Each level is tried once, with the first levels of the other factors.
+    Each level is tried once, with the first levels of the other factors (`trials`).
 
     Raises:
         ExperimentError: Something is not; everything that is not is named, with its place.
     """
     source, _ = read_toml(path, ExperimentError)
     found: list[tuple[str, KeyPath]] = []
+    checks = RequestChecks()
     checked: list[CheckedRequest] = []
     scenarios: dict[Path, None] = {}
-    for cell, place in _trials(design):
-        settings = {**design.fixed, **cell}
+    seconds: list[float] = []
+    for trial in trials_of(design):
+        settings = {**design.fixed, **trial.cell}
         try:
-            checked.append(_tried(design, settings))
+            request = _request(design, settings)
+            if trial.is_whole:
+                checked.append(checks.check(request))
             scenarios[scenario_file(_case(design, settings))] = None
+            seconds.append(request.simulated_seconds)
         except (TrafficError, SpecificationErrors) as error:
-            found.append((_fault(error), _culprit(design, cell) or place))
+            found.append((_fault(error), _culprit(design, trial.cell, checks) or trial.place))
     found += _unknown_measures(design, checked)
     if found:
         raise ExperimentError(*dict.fromkeys(faults_of(found, source)))
-    return CheckedDesign(design, tuple(checked), tuple(scenarios))
+    files = (file for each in checked for file in each.files)
+    return CheckedDesign(
+        design=design,
+        files=tuple(dict.fromkeys([*scenarios, *files])),
+        simulated_seconds=sum(seconds) / len(seconds) * design.n_runs,
+    )
 
 
 _OWN = {"name", "folder"}
@@ -164,22 +171,8 @@ def _odd_levels(name: str, levels: tuple[Level, ...] | LevelRange, *, is_sampled
         yield f"'{name}' has a level twice", ("factors", name)
 
 
-def _trials(design: Design) -> Iterator[tuple[Cell, KeyPath]]:
-    """Yield cells in which every level occurs, and where the newest one is written."""
-    if design.cells:
-        for number, cell in enumerate(design.cells):
-            yield cell, ("cells", number)
-        return
-    levels = {name: _ends(given) for name, given in design.factors.items()}
-    first = {name: given[0] for name, given in levels.items()}
-    yield first, ("fixed",)
-    for name, given in levels.items():
-        for level in given[1:]:
-            yield {**first, name: level}, ("factors", name)
-
-
-def _tried(design: Design, settings: dict[str, Level]) -> CheckedRequest:
-    return check_request(request_of(_case(design, settings), Path("unwritten")))
+def _request(design: Design, settings: dict[str, Level]) -> RunRequest:
+    return request_of(_case(design, settings), Path("unwritten"))
 
 
 def _case(design: Design, settings: dict[str, Level]) -> Case:
@@ -188,20 +181,17 @@ def _case(design: Design, settings: dict[str, Level]) -> Case:
     return Case(0, design.first_seed, scenario, others, design.folder)
 
 
-def _culprit(design: Design, cell: Cell) -> KeyPath | None:
+def _culprit(design: Design, cell: Cell, checks: RequestChecks) -> KeyPath | None:
     """Return the place of the setting without which a cell would be possible, if it is one."""
     settings = {**design.fixed, **cell}
     for name in settings.keys() - {_SCENARIO}:
         try:
-            _tried(design, {key: level for key, level in settings.items() if key != name})
+            others = {key: level for key, level in settings.items() if key != name}
+            checks.check(_request(design, others))
         except (TrafficError, SpecificationErrors):
             continue
         return ("fixed" if name in design.fixed else "factors", name)
     return None
-
-
-def _ends(levels: tuple[Level, ...] | LevelRange) -> tuple[Level, ...]:
-    return levels.bounds if isinstance(levels, LevelRange) else levels
 
 
 def _unknown_measures(design: Design, checked: list[CheckedRequest]) -> Found:

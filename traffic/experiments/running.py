@@ -41,6 +41,11 @@ class Experiment:
     outcomes: Mapping[str, Outcome] = field(default_factory=dict, repr=False)
     files: tuple[str, ...] = ()
 
+    @property
+    def has_failed(self) -> bool:
+        """Whether all of its runs failed, so that nothing was measured."""
+        return len(self.errors) == self.design.n_runs
+
 
 def run_experiment(request: ExperimentRequest, on_progress: OnProgress) -> Experiment:
     """Do what is asked; what is finished stays, whatever happens.

@@ -46,6 +46,8 @@ def read_toml(path: Path, error: Error) -> tuple[SourceText, dict[str, Any]]:
 
 def faults_of(found: Iterable[tuple[str, KeyPath]], source: SourceText) -> list[str]:
     """Return messages with their places and the lines in question, in reading order."""
+    if not (found := list(found)):
+        return []
     places = places_of_keys(source)
     spans = [(span_of(path, places, source), message) for message, path in found]
     return [

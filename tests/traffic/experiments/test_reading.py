@@ -53,7 +53,7 @@ def test_the_bundled_designs_are_possible() -> None:
         ("[0, 4]", "[[1]]", ":8:1: expected a number, a text, or true or false, found [1]"),
         ("[0, 4]", "4", ":8:1: expected an array, found 4"),
         ('"truth"', '["truth"]', ":5:1: expected a number, a text, or true or false"),
-        ("[0, 4]", "[]", ":8:1: expected at least one item"),
+        ("[0, 4]", "[]", ":8:1: expected at least one level, found none"),
         ("[0, 4]", "{ from = 0, to = 4 }", ":8:1: a range of levels needs the table 'sampling'"),
         (".gap", ".gp", ":9:1: no setting of 'CarRelations' called 'gp'"),
         ('"car_relations.gap" = [1', '"overtakes.longst" = ["3 s"', ":9:1: '/"),
@@ -83,6 +83,33 @@ def test_every_fault_has_its_place(tmp_path: Path, old: str, new: str, said: str
 
     assert any(said.lower() in fault.lower() for fault in found), found
     assert all(fault.startswith("d.toml:") for fault in found)
+
+
+def test_a_fault_is_told_once(tmp_path: Path) -> None:
+    """However many levels have it, and whatever else could be said about them."""
+    found = faults(GOOD.replace("[0, 4]", "[[1], [1]]"), tmp_path)
+
+    assert found == ["d.toml:8:1: expected a number, a text, or true or false, found [1]"]
+
+
+def test_faults_among_many_levels_are_found(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Of many numbers some networks are tried, but every level's other faults are told."""
+    monkeypatch.setattr("traffic.experiments.trials.MOST_NUMBERS", 3)
+    noise = [*map(str, range(30))]
+    noise[15] = '"much"'
+    period = [str(10 * n) for n in range(10, 40)]
+    period[7] = "1003"
+    text = GOOD.replace("[0, 4]", f"[{', '.join(noise)}]").replace(
+        '"car_relations.gap" = [1, 2]', f"sample_period = [{', '.join(period)}]"
+    )
+
+    found = faults(text, tmp_path)
+
+    assert len(found) == 2
+    assert ":8:1: position_noise: expected a number of metres, found 'much'" in found[0]
+    assert ":9:1: --sample-period: expected a multiple of 10 ms" in found[1]
 
 
 def test_a_parameter_of_chronicles_may_be_a_factor(tmp_path: Path) -> None:
