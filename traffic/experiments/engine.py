@@ -4,6 +4,7 @@ The simulator has one state per process, and two threads of one process would di
 without an error. So a worker has one thread, and a cluster whose workers have more is refused.
 """
 
+import asyncio
 import os
 from collections.abc import Collection, Iterable, Iterator
 from contextlib import AbstractContextManager, contextmanager
@@ -11,9 +12,11 @@ from pathlib import Path
 from typing import Any
 
 import dask
-from distributed import Client, Future, KilledWorker, LocalCluster, wait
+from distributed import Client, Future, KilledWorker, LocalCluster, Security, wait
 from distributed.client import FuturesCancelledError
 from distributed.comm.addressing import resolve_address
+from distributed.comm.core import connect
+from distributed.core import send_recv
 
 from traffic.bundled import data_folder
 from traffic.errors import ExperimentError
@@ -34,9 +37,10 @@ _LONGEST_WITHOUT_WORKERS = 60
 """Seconds; workers that have died may be replaced in the meantime."""
 
 _SAFE = "the runs before are safe, --resume does the others"
-_SECONDS = "10s"
+_SECONDS = 10
+_SCHEDULER = "Scheduler"
 _SETTINGS = {
-    "distributed.comm.timeouts.connect": _SECONDS,
+    "distributed.comm.timeouts.connect": f"{_SECONDS}s",
     "distributed.scheduler.allowed-failures": 3,
     "distributed.worker.memory.terminate": False,
     "distributed.admin.tick.limit": "1h",
@@ -124,13 +128,13 @@ def local_workers(number: int) -> Iterator[Engine]:
 
 
 @contextmanager
-def cluster_at(address: str, basis: Basis, timeout: str = _SECONDS) -> Iterator[Engine]:
+def cluster_at(address: str, basis: Basis, timeout: float = _SECONDS) -> Iterator[Engine]:
     """Give an engine with the workers of a cluster while the block lasts.
 
     Args:
         address: Of the cluster's scheduler, such as `tcp://host:8786`.
         basis: What the runs are to depend on.
-        timeout: How long to wait for an answer.
+        timeout: How many seconds to wait for an answer.
 
     Raises:
         ExperimentError: The cluster does not answer, has no workers, has workers with more than
@@ -139,13 +143,51 @@ def cluster_at(address: str, basis: Basis, timeout: str = _SECONDS) -> Iterator[
     with _settings():
         try:
             resolve_address(address)
+            asyncio.run(_greet(address, timeout))
             client = Client(address, timeout=timeout, set_as_default=False)
         except Exception as error:  # whatever it is that answers may make anything happen
-            fault = f"--cluster: no cluster answers at '{address}': {error}"
+            fault = f"--cluster: no cluster answers at '{address}': {_line_about(error)}"
             raise ExperimentError(fault) from error
         with client:
             _check(client, address, basis)
             yield Engine(client)
+
+
+async def _greet(address: str, timeout: float) -> None:
+    """Ask who is there; a client would wait for ever for one that takes calls and says nothing.
+
+    Raises:
+        ExperimentError: It is not the scheduler of a cluster, or says nothing in time.
+        OSError: There is nobody.
+    """
+    try:
+        async with asyncio.timeout(timeout):
+            kind = await _kind_of(address, timeout / 2)
+    except TimeoutError as error:
+        fault = f"what is there has not said within {timeout:g} s that it is a Dask scheduler"
+        raise ExperimentError(fault) from error
+    except OSError:
+        raise
+    except Exception as error:  # it may say anything
+        raise ExperimentError("what is there does not talk as a Dask scheduler does") from error
+    if kind != _SCHEDULER:
+        raise ExperimentError(f"expected a Dask scheduler, found a {kind}")
+
+
+async def _kind_of(address: str, timeout: float) -> str:
+    """Return what part of a cluster is at an address."""
+    how = Security().get_connection_args("client")
+    comm = await connect(address, timeout=timeout, **how)
+    try:
+        answer: dict[str, str] = await send_recv(comm, op="identity")
+    finally:
+        comm.abort()
+    return answer["type"]
+
+
+def _line_about(error: Exception) -> str:
+    text = " ".join(str(error).split())
+    return text or type(error).__name__
 
 
 def _settings() -> AbstractContextManager[object]:

@@ -2,7 +2,9 @@
 
 import os
 import signal
+import socket
 from pathlib import Path
+from threading import Thread
 
 import pytest
 from distributed import LocalCluster
@@ -47,7 +49,60 @@ def test_a_cluster_that_does_not_answer_is_told() -> None:
     """Nobody listens at the address, or it is none."""
     with (
         pytest.raises(ExperimentError, match="no cluster answers at"),
-        cluster_at("tcp://127.0.0.1:9", BASIS, timeout="1s"),
+        cluster_at("tcp://127.0.0.1:9", BASIS, timeout=1.0),
+    ):
+        pass
+
+
+@pytest.mark.parametrize(
+    ("greeting", "said"),
+    [
+        (b"", r"has not said within 0\.5 s that it is a Dask scheduler"),
+        (b"SSH-2.0-OpenSSH_9.2\r\n", "does not talk as a Dask scheduler does"),
+        (b"HTTP/1.1 400 Bad Request\r\n\r\n", "does not talk as a Dask scheduler does"),
+    ],
+)
+def test_something_else_that_answers_is_told(greeting: bytes, said: str) -> None:
+    """It may wait for a line that never comes, or speak first; the message has one line."""
+    with socket.create_server(("127.0.0.1", 0)) as server:
+        host, port = server.getsockname()
+        address = f"tcp://{host}:{port}"
+        calls: list[socket.socket] = []
+        answering = Thread(target=_answer_once, args=(server, greeting, calls))
+        answering.start()
+        with (
+            pytest.raises(ExperimentError, match=said) as caught,
+            cluster_at(address, BASIS, timeout=0.5),
+        ):
+            pass
+        answering.join()
+        calls[0].close()
+
+    assert str(caught.value).startswith(f"--cluster: no cluster answers at '{address}': ")
+    assert "\n" not in str(caught.value)
+
+
+def _answer_once(server: socket.socket, greeting: bytes, calls: list[socket.socket]) -> None:
+    """Take a call, say *greeting*, and leave the line open."""
+    call, _ = server.accept()
+    calls.append(call)
+    call.sendall(greeting)
+
+
+@pytest.mark.filterwarnings("ignore::DeprecationWarning", "ignore::ResourceWarning")
+def test_a_worker_is_no_cluster() -> None:
+    """Its address is told with the others of a cluster, and easily taken for the scheduler's."""
+    with (
+        LocalCluster(
+            n_workers=1,
+            threads_per_worker=1,
+            processes=False,
+            protocol="tcp",
+            host="127.0.0.1",
+            dashboard_address="127.0.0.1:0",
+        ) as cluster,
+        pytest.raises(ExperimentError, match="expected a Dask scheduler, found a Worker"),
+        cluster_at(cluster.workers[0].address, BASIS),
     ):
         pass
 
