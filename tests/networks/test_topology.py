@@ -13,6 +13,15 @@ STAR = {
     "west": (-200.0, 0.0),
 }
 
+TWIN = [
+    Road("centre", "north"),
+    Road("centre", "west"),
+    Road("centre", "twin"),
+    Road("twin", "east"),
+    Road("twin", "south"),
+]
+"""The roads of two crossings, one beside the other."""
+
 
 def names(crossings):
     """Return the junctions of each crossing."""
@@ -47,15 +56,8 @@ def test_an_edge_split_is_no_crossing():
 def test_crossings_close_together_are_one():
     """Two crossings with a link under 30 m between them become one and swallow the link."""
     places = STAR | {"twin": (29.0 + 2 * 7.2, 0.0), "south": (43.0, -200.0)}
-    roads = [
-        Road("centre", "north"),
-        Road("centre", "west"),
-        Road("centre", "twin"),
-        Road("twin", "east"),
-        Road("twin", "south"),
-    ]
 
-    found = topology_of(network_parts(places, roads))
+    found = topology_of(network_parts(places, TWIN))
 
     assert names(found.crossings) == [{"centre", "twin"}]
     assert len(found.links) == 4
@@ -65,15 +67,8 @@ def test_crossings_close_together_are_one():
 def test_crossings_farther_apart_stay_two():
     """A link of 31 m keeps two crossings apart."""
     places = STAR | {"twin": (31.0 + 2 * 7.2, 0.0), "south": (45.0, -200.0)}
-    roads = [
-        Road("centre", "north"),
-        Road("centre", "west"),
-        Road("centre", "twin"),
-        Road("twin", "east"),
-        Road("twin", "south"),
-    ]
 
-    found = topology_of(network_parts(places, roads))
+    found = topology_of(network_parts(places, TWIN))
 
     assert names(found.crossings) == [{"centre"}, {"twin"}]
     assert found.crossing_of_edge == {}

@@ -1,4 +1,4 @@
-"""A run that has been recorded once, for all tests of recordings."""
+"""A run that has been recorded once, for all tests of recordings and explanations."""
 
 from pathlib import Path
 from typing import NamedTuple

@@ -26,6 +26,18 @@ def case(seed: int, **settings: object) -> Case:
     return Case(0, seed, "rural", {**SHORT, **settings}, Path())
 
 
+def someones_cluster(threads: int = 1) -> LocalCluster:
+    """Return a cluster of one worker that was not made for experiments."""
+    return LocalCluster(
+        n_workers=1,
+        threads_per_worker=threads,
+        processes=False,
+        protocol="tcp",
+        host="127.0.0.1",
+        dashboard_address="127.0.0.1:0",
+    )
+
+
 @pytest.mark.sumo
 @pytest.mark.filterwarnings("ignore::DeprecationWarning", "ignore::ResourceWarning")
 def test_processes_do_runs_and_one_that_dies_is_replaced() -> None:
@@ -93,14 +105,7 @@ def _answer_once(server: socket.socket, greeting: bytes, calls: list[socket.sock
 def test_a_worker_is_no_cluster() -> None:
     """Its address is told with the others of a cluster, and easily taken for the scheduler's."""
     with (
-        LocalCluster(
-            n_workers=1,
-            threads_per_worker=1,
-            processes=False,
-            protocol="tcp",
-            host="127.0.0.1",
-            dashboard_address="127.0.0.1:0",
-        ) as cluster,
+        someones_cluster() as cluster,
         pytest.raises(ExperimentError, match="expected a Dask scheduler, found a Worker"),
         cluster_at(cluster.workers[0].address, BASIS),
     ):
@@ -127,14 +132,7 @@ def test_a_cluster_with_other_versions_or_files_is_refused(
 ) -> None:
     """Its runs would not be those of this machine."""
     with (
-        LocalCluster(
-            n_workers=1,
-            threads_per_worker=1,
-            processes=False,
-            protocol="tcp",
-            host="127.0.0.1",
-            dashboard_address="127.0.0.1:0",
-        ) as cluster,
+        someones_cluster() as cluster,
         pytest.raises(ExperimentError, match=said),
         cluster_at(cluster.scheduler_address, BASIS.model_copy(update=changed)),
     ):
@@ -145,14 +143,7 @@ def test_a_cluster_with_other_versions_or_files_is_refused(
 def test_a_cluster_whose_workers_have_threads_is_refused() -> None:
     """The simulator has one state per process; the message says so."""
     with (
-        LocalCluster(
-            n_workers=1,
-            threads_per_worker=2,
-            processes=False,
-            protocol="tcp",
-            host="127.0.0.1",
-            dashboard_address="127.0.0.1:0",
-        ) as cluster,
+        someones_cluster(threads=2) as cluster,
         pytest.raises(ExperimentError, match="one state per process"),
         cluster_at(cluster.scheduler_address, BASIS),
     ):

@@ -11,7 +11,6 @@ from traffic.explaining.kept import open_kept_run
 from traffic.explaining.walking import Walker
 from traffic.recording.rebuilding import open_run
 from traffic.request import RunRequest
-from traffic.results import RunResult
 from traffic.running import run_scenario
 
 
@@ -22,14 +21,6 @@ class ExplainedRun(NamedTuple):
     recording: Recording
 
 
-class KeptRun(NamedTuple):
-    """A run, its folder and its recording; not to be changed."""
-
-    path: Path
-    result: RunResult
-    folder: Path
-
-
 class FilmedRun(NamedTuple):
     """A short run through the cameras, and the recording of its images."""
 
@@ -38,26 +29,10 @@ class FilmedRun(NamedTuple):
 
 
 @pytest.fixture(scope="session")
-def kept_run(tmp_path_factory: pytest.TempPathFactory) -> KeptRun:
-    """Return seven seconds of the crossing, from the simulator's positions."""
-    place = tmp_path_factory.mktemp("kept")
-    request = RunRequest.from_texts(
-        scenario="crossing",
-        view="truth",
-        duration="7 s",
-        position_noise=0.5,
-        record=place / "run.mcap",
-        out=place / "run",
-    )
-    result, folder = run_scenario(request, lambda *_: None)
-    return KeptRun(place / "run.mcap", result, folder)
-
-
-@pytest.fixture(scope="session")
-def explained_run(kept_run) -> Iterator[ExplainedRun]:
-    """Return the same run, opened."""
-    with open_run(kept_run.path) as recording:
-        yield ExplainedRun(Walker(open_kept_run(kept_run.folder)), recording)
+def explained_run(recorded_run) -> Iterator[ExplainedRun]:
+    """Return the run that all tests of recordings share, opened."""
+    with open_run(recorded_run.path) as recording:
+        yield ExplainedRun(Walker(open_kept_run(recorded_run.folder)), recording)
 
 
 @pytest.fixture(scope="session")

@@ -19,12 +19,12 @@ def asked(run, recognition, **options):
     return explain_run(request, lambda _: "text", lambda *_: None)
 
 
-def test_recognitions_are_listed_as_the_result_has_them(kept_run):
+def test_recognitions_are_listed_as_the_result_has_them(recorded_run):
     """The numbers begin with 1."""
-    listed = recognitions_of(kept_run.folder)
+    listed = recognitions_of(recorded_run.folder)
 
     assert [each.number for each in listed] == [*range(1, len(listed) + 1)]
-    names = [each.chronicle for each in kept_run.result.recognitions]
+    names = [each.chronicle for each in recorded_run.result.recognitions]
     assert [each.chronicle for each in listed] == names
 
 
@@ -41,9 +41,9 @@ def test_a_recognition_is_asked_for_by_number_or_name(explained_run):
         number_of(run, f"{repeated}x")
 
 
-def test_a_folder_holds_text_json_and_picture(kept_run, tmp_path):
+def test_a_folder_holds_text_json_and_picture(recorded_run, tmp_path):
     """Nothing is written over."""
-    told = asked(kept_run.folder, "1", out=tmp_path / "x", picture=tmp_path / "p.png")
+    told = asked(recorded_run.folder, "1", out=tmp_path / "x", picture=tmp_path / "p.png")
 
     document = (tmp_path / "x" / "explanation.json").read_text()
     assert Explanation.model_validate_json(document) == told
@@ -52,31 +52,31 @@ def test_a_folder_holds_text_json_and_picture(kept_run, tmp_path):
     assert picture.startswith(b"\x89PNG")
     assert (tmp_path / "p.png").read_bytes() == picture
     with pytest.raises(ResultError, match="exists already"):
-        asked(kept_run.folder, "1", out=tmp_path / "x")
+        asked(recorded_run.folder, "1", out=tmp_path / "x")
     with pytest.raises(RequestError, match="does not exist yet"):
-        asked(kept_run.folder, "1", picture=tmp_path / "p.png")
+        asked(recorded_run.folder, "1", picture=tmp_path / "p.png")
 
 
-def test_a_folder_is_not_left_half_written(kept_run, tmp_path):
+def test_a_folder_is_not_left_half_written(recorded_run, tmp_path):
     """If there is no such recognition, there is no folder either."""
     with pytest.raises(ExplanationError):
-        asked(kept_run.folder, "999", out=tmp_path / "x")
+        asked(recorded_run.folder, "999", out=tmp_path / "x")
 
     assert not list(tmp_path.iterdir())
 
 
 @pytest.mark.parametrize("option", ["picture", "out"])
-def test_a_list_has_no_picture(kept_run, tmp_path, option):
+def test_a_list_has_no_picture(recorded_run, tmp_path, option):
     """An option that would have no effect is refused."""
     with pytest.raises(RequestError, match="only has a meaning with a recognition"):
         ExplanationRequest.from_texts(
-            run=kept_run.folder, recognition=None, **{option: tmp_path / "x.png"}
+            run=recorded_run.folder, recognition=None, **{option: tmp_path / "x.png"}
         )
 
 
-def test_the_command_prints_text_or_json(kept_run):
+def test_the_command_prints_text_or_json(recorded_run):
     """Both tell of the same recognition; without a number there is a list."""
-    runner, folder = CliRunner(), str(kept_run.folder)
+    runner, folder = CliRunner(), str(recorded_run.folder)
 
     text = runner.invoke(app, ["explain", folder, "1"], env={"COLUMNS": "200"}).output
     document = json.loads(runner.invoke(app, ["explain", folder, "1", "--json"]).stdout)

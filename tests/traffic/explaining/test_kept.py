@@ -14,9 +14,9 @@ pytestmark = pytest.mark.sumo
 
 
 @pytest.fixture
-def folder(kept_run, tmp_path):
+def folder(recorded_run, tmp_path):
     """Return a copy of a run, to be damaged."""
-    return shutil.copytree(kept_run.folder, tmp_path / "run")
+    return shutil.copytree(recorded_run.folder, tmp_path / "run")
 
 
 def test_a_run_that_does_not_exist_is_refused(tmp_path):
@@ -27,10 +27,10 @@ def test_a_run_that_does_not_exist_is_refused(tmp_path):
         open_kept_run(tmp_path)
 
 
-def test_a_recording_is_not_a_run(kept_run):
+def test_a_recording_is_not_a_run(recorded_run):
     """The message says how it becomes one."""
     with pytest.raises(ExplanationError, match=r"'traffic replay .*run\.mcap --out FOLDER'"):
-        open_kept_run(kept_run.path)
+        open_kept_run(recorded_run.path)
 
 
 def test_a_run_of_an_older_version_is_refused(folder):

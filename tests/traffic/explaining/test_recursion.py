@@ -13,9 +13,9 @@ pytestmark = pytest.mark.sumo
 
 
 @pytest.fixture
-def walker(kept_run, tmp_path):
+def walker(recorded_run, tmp_path):
     """Return a run with one more recognition: an event of it is the first recognition."""
-    folder = shutil.copytree(kept_run.folder, tmp_path / "run")
+    folder = shutil.copytree(recorded_run.folder, tmp_path / "run")
     path = folder / "result.json"
     document = json.loads(path.read_text())
     first = document["recognitions"][0]

@@ -7,6 +7,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from dyknow.errors import SpecificationErrors
+from tests.support.damage import damaged
 from tests.support.state_files import Pieces, asked, reader_of, states_in
 from traffic.errors import LineError
 from traffic.monitoring.following import follow
@@ -56,24 +57,6 @@ def test_endless_blanks_end(monkeypatch):
 
     with pytest.raises(LineError, match="expected at least one state"):
         read_states(Pieces(b" " * 1_000, 10), "f", {})
-
-
-PIECES = st.one_of(
-    st.binary(max_size=4),
-    st.sampled_from([b"{", b"}", b'"', b",", b":", b"\n", b"null", b"NaN", b"1e999", b"-1", b"["]),
-    st.sampled_from([b"\\", b"\r", b"t", b"9" * 400, b"\xff", b"\xe2\x82", b"\\ud800", b"\0"]),
-)
-
-
-@st.composite
-def damaged(draw, content):
-    """Return bytes of which stretches were lost, doubled or written over."""
-    for _ in range(draw(st.integers(1, 4))):
-        start = draw(st.integers(0, len(content)))
-        end = min(len(content), start + draw(st.integers(0, 12)))
-        middle = draw(st.one_of(st.just(b""), st.just(content[start:end] * 2), PIECES))
-        content = content[:start] + middle + content[end:]
-    return content[: draw(st.one_of(st.just(len(content)), st.integers(0, len(content))))]
 
 
 @settings(derandomize=True, deadline=None, max_examples=250)

@@ -6,6 +6,7 @@ from hypothesis import strategies as st
 
 from chronicles.events import Event
 from dyknow.time import TimePoint
+from tests.support.damage import damaged
 from tests.support.event_files import events_in
 from traffic.errors import LineError
 from traffic.recognising.opening import open_events
@@ -41,24 +42,6 @@ def test_names_tell_the_format(tmp_path) -> None:
 def test_a_file_may_be_empty(text: str, ending: str) -> None:
     """Nothing happened."""
     assert events_in(text, ending) == []
-
-
-PIECES = st.one_of(
-    st.binary(max_size=4),
-    st.sampled_from([b"{", b"}", b'"', b",", b":", b"\n", b"null", b"NaN", b"1e999", b"-1", b"["]),
-    st.sampled_from([b"\\", b"\r", b"t", b"9" * 400, b"\xff", b"\xe2\x82", b"\\ud800", b"\0"]),
-)
-
-
-@st.composite
-def damaged(draw: st.DrawFn, content: bytes) -> bytes:
-    """Return bytes of which stretches were lost, doubled or written over."""
-    for _ in range(draw(st.integers(1, 4))):
-        start = draw(st.integers(0, len(content)))
-        end = min(len(content), start + draw(st.integers(0, 12)))
-        middle = draw(st.one_of(st.just(b""), st.just(content[start:end] * 2), PIECES))
-        content = content[:start] + middle + content[end:]
-    return content[: draw(st.one_of(st.just(len(content)), st.integers(0, len(content))))]
 
 
 @settings(derandomize=True, deadline=None, max_examples=250)
