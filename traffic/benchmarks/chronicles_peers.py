@@ -23,7 +23,7 @@ from tempfile import TemporaryDirectory
 from chronicles.events import Event
 from dyknow.time import MILLISECOND
 from traffic.benchmarks.chronicles_events import Instants
-from traffic.benchmarks.machine import version_of
+from traffic.benchmarks.machine import missing_distributions, version_of
 from traffic.benchmarks.measuring import undisturbed
 
 __all__ = ["PEERS", "ChroniclePeer", "Found", "installed_peers", "missing_peers"]
@@ -82,11 +82,7 @@ def installed_peers() -> list[ChroniclePeer]:
 
 def missing_peers() -> list[str]:
     """Return a sentence for each engine that cannot be run here."""
-    notes = [
-        f"No comparison with {name}, which is not installed ('pip install {name}' brings it)."
-        for name in PEERS
-        if version_of(name) is None
-    ]
+    notes = missing_distributions(PEERS)
     if version_of("pysiddhi") is not None and not _java_and_libraries():
         notes.append("No comparison with Siddhi, for there is no Java development kit here.")
     return notes

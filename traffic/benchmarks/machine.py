@@ -9,7 +9,7 @@ import psutil
 
 from traffic.benchmarks.results import Machine
 
-__all__ = ["this_machine", "version_of"]
+__all__ = ["missing_distributions", "this_machine", "version_of"]
 
 _OURS = ("dyknow-traffic", "lark", "mcap", "numpy", "protobuf", "scipy")
 _PROCESSORS = Path("/proc/cpuinfo")
@@ -36,6 +36,15 @@ def version_of(distribution: str) -> str | None:
         return version(distribution)
     except PackageNotFoundError:
         return None
+
+
+def missing_distributions(names: Sequence[str]) -> list[str]:
+    """Return a sentence for each distribution to compare with that is not installed."""
+    return [
+        f"No comparison with {name}, which is not installed ('pip install {name}' brings it)."
+        for name in names
+        if version_of(name) is None
+    ]
 
 
 def _processor() -> str:

@@ -13,7 +13,7 @@ from importlib import import_module
 from typing import Any
 
 from dyknow.time import SECOND, TimePoint
-from traffic.benchmarks.machine import version_of
+from traffic.benchmarks.machine import missing_distributions, version_of
 from traffic.benchmarks.sequences import FORMULAS, FormulaUnderTest
 
 __all__ = ["PEERS", "MonitorPeer", "Step", "installed_peers", "missing_peers"]
@@ -58,11 +58,7 @@ def installed_peers() -> list[MonitorPeer]:
 
 def missing_peers() -> list[str]:
     """Return a sentence for each peer that is not installed."""
-    return [
-        f"No comparison with {name}, which is not installed ('pip install {name}' brings it)."
-        for name in PEERS
-        if version_of(name) is None
-    ]
+    return missing_distributions(PEERS)
 
 
 _EVENTUALLY, _EVENTUALLY_ALWAYS = (formula.name for formula in FORMULAS)

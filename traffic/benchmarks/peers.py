@@ -11,7 +11,7 @@ from importlib import import_module
 from typing import Any
 
 from dyknow.streams.sample import Sample
-from traffic.benchmarks.machine import version_of
+from traffic.benchmarks.machine import missing_distributions, version_of
 from traffic.benchmarks.results import Measurement, Ratio
 from traffic.benchmarks.workloads import PERIOD
 
@@ -61,11 +61,7 @@ def installed_peers() -> list[Peer]:
 
 def missing_peers() -> list[str]:
     """Return a sentence for each peer that is not installed."""
-    return [
-        f"No comparison with {name}, which is not installed ('pip install {name}' brings it)."
-        for name in PEERS
-        if version_of(name) is None
-    ]
+    return missing_distributions(PEERS)
 
 
 def ratio_to(

@@ -7,8 +7,8 @@ from pathlib import Path
 from pydantic import ValidationError
 
 from dyknow.errors import SpecificationErrors
-from dyknow.source_text import nearest_name
-from traffic.bundled import data_folder
+from dyknow.source_text import did_you_mean, nearest_name
+from traffic.bundled import bundled_or_path, data_folder
 from traffic.errors import ExperimentError, TrafficError
 from traffic.experiments.cases import Case, request_of, scenario_file
 from traffic.experiments.designs import Cell, Design, Level, LevelRange, Sampling
@@ -38,15 +38,7 @@ def find_design(name: str) -> Path:
     Raises:
         ExperimentError: There is neither.
     """
-    bundled = bundled_designs()
-    if name in bundled:
-        return bundled[name]
-    if name.endswith(".toml") or Path(name).is_file():
-        return Path(name)
-    nearest = nearest_name(name, bundled)
-    hint = f"; did you mean '{nearest}'?" if nearest else ""
-    known = ", ".join(bundled)
-    raise ExperimentError(f"no design called '{name}'{hint} (there are {known}, or a .toml file)")
+    return bundled_or_path(name, bundled_designs(), "design", ExperimentError)
 
 
 def read_design(path: Path, folder: Path | None = None) -> Design:
@@ -202,8 +194,7 @@ def _unknown_measures(design: Design, checked: list[CheckedRequest]) -> Found:
     for measure in design.measures:
         kind = kind_of(measure)
         if kind not in kinds:
-            nearest = nearest_name(kind, kinds)
-            hint = f"; did you mean '{nearest}'?" if nearest else ""
+            hint = did_you_mean(nearest_name(kind, kinds))
             known = ", ".join(kinds)
             yield f"no run scores '{kind}'{hint} (they score {known})", ("measures",)
 

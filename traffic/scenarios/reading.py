@@ -10,9 +10,9 @@ from pathlib import Path
 from pydantic import ValidationError
 from pydantic_core import ErrorDetails
 
-from dyknow.source_text import nearest_name
+from dyknow.source_text import did_you_mean, nearest_name
 from dyknow.time import MINUTE, Duration
-from traffic.bundled import data_folder
+from traffic.bundled import bundled_or_path, data_folder
 from traffic.errors import ScenarioError
 from traffic.scenarios.acts import ACTS
 from traffic.scenarios.changing import put_all
@@ -64,15 +64,7 @@ def scenario_path(name: str) -> Path:
     Raises:
         ScenarioError: There is neither.
     """
-    bundled = _bundled_paths()
-    if name in bundled:
-        return bundled[name]
-    if name.endswith(".toml") or Path(name).is_file():
-        return Path(name)
-    nearest = nearest_name(name, bundled)
-    hint = f"; did you mean '{nearest}'?" if nearest else ""
-    known = ", ".join(bundled)
-    raise ScenarioError(f"no scenario called '{name}'{hint} (there are {known}, or a .toml file)")
+    return bundled_or_path(name, _bundled_paths(), "scenario", ScenarioError)
 
 
 def read_scenario(path: Path, changes: Mapping[str, object] | None = None) -> Scenario:
@@ -242,6 +234,5 @@ def _ids(tag: str, network: str) -> list[str]:
 
 
 def _unknown(kind: str, name: str, known: list[str]) -> str:
-    nearest = nearest_name(name, known)
-    hint = f"; did you mean '{nearest}'?" if nearest else ""
+    hint = did_you_mean(nearest_name(name, known))
     return f"no {kind} called '{name}'{hint}"
