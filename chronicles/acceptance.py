@@ -17,7 +17,7 @@ from chronicles.syntax import (
     Condition,
     MessageDeclaration,
 )
-from dyknow.source_text import nearest_name
+from dyknow.source_text import did_you_mean, nearest_name
 
 __all__ = ["Acceptance", "Refusal", "RefusalKind"]
 
@@ -132,8 +132,7 @@ class Acceptance:
     def _unknown(self, name: str) -> Refusal:
         refusal = self._refusals.get(name)
         if refusal is None:
-            nearest = nearest_name(name, self._shapes)
-            hint = f"; did you mean '{nearest}'?" if nearest else ""
+            hint = did_you_mean(nearest_name(name, self._shapes))
             refusal = Refusal(RefusalKind.UNKNOWN, f"no chronicle knows '{name}'{hint}")
             if len(self._refusals) < _MOST_KEPT:
                 self._refusals[name] = refusal

@@ -7,7 +7,7 @@ instance that dies) is not an error; see `chronicles.recognition`.
 from collections.abc import Sequence
 
 from dyknow.errors import SpecificationError
-from dyknow.source_text import Span, nearest_name
+from dyknow.source_text import Span, did_you_mean, nearest_are, nearest_name
 
 __all__ = [
     "ChronicleError",
@@ -50,7 +50,7 @@ class UnboundInstantError(ChronicleError):
     """An instant is used that is the time of no event of its chronicle."""
 
     def __init__(self, instant: str, span: Span, nearest: str | None = None) -> None:
-        hint = f"; did you mean '{nearest}'?" if nearest else ""
+        hint = did_you_mean(nearest)
         super().__init__(f"instant '{instant}' is the time of no event{hint}", span)
 
 
@@ -58,7 +58,7 @@ class UnboundVariableError(ChronicleError):
     """A variable is used that no event of its chronicle binds."""
 
     def __init__(self, variable: str, span: Span, nearest: str | None = None) -> None:
-        hint = f"; did you mean '{nearest}'?" if nearest else ""
+        hint = did_you_mean(nearest)
         super().__init__(f"variable '{variable}' is bound by no event{hint}", span)
 
 
@@ -66,10 +66,8 @@ class UngroundedAttributeError(ChronicleError):
     """No stream gives the values of an attribute."""
 
     def __init__(self, attribute: str, expected: str, nearest: Sequence[str], span: Span) -> None:
-        close = ", ".join(f"'{label}'" for label in nearest)
-        hint = f"; nearest are {close}" if len(nearest) > 1 else f"; nearest is {close}"
         message = f"no stream for the attribute '{attribute}': expected {expected}"
-        super().__init__(message + (hint if nearest else ""), span)
+        super().__init__(message + nearest_are(nearest), span)
         self.attribute = attribute
         self.nearest = tuple(nearest)
 
@@ -78,8 +76,7 @@ class UnknownParameterError(ChronicleError):
     """A value is given to a parameter that the file does not have."""
 
     def __init__(self, name: str, file: str, known: Sequence[str], span: Span) -> None:
-        nearest = nearest_name(name, known)
-        hint = f"; did you mean '{nearest}'?" if nearest else ""
+        hint = did_you_mean(nearest_name(name, known))
         there = f"it has {', '.join(known)}" if known else "it has none"
         super().__init__(f"'{file}' has no parameter '{name}'{hint} ({there})", span)
         self.name = name
@@ -89,5 +86,5 @@ class ValueOutsideDomainError(ChronicleError):
     """A value is used where its domain does not allow it."""
 
     def __init__(self, value: str, place: str, span: Span, nearest: str | None = None) -> None:
-        hint = f"; did you mean '{nearest}'?" if nearest else ""
+        hint = did_you_mean(nearest)
         super().__init__(f"'{value}' is not in the domain of {place}{hint}", span)

@@ -19,6 +19,7 @@ __all__ = [
     "json_from_recognition",
     "json_from_time",
     "recognition_from_json",
+    "text_from_value",
 ]
 
 LAST_TIME: Final = (1 << 63) - 1
@@ -173,15 +174,22 @@ def _arguments(document: Mapping[str, Any]) -> tuple[str, ...]:
     return tuple(_text({"arguments": argument}, "arguments") for argument in arguments)
 
 
-def _value(value: object, key: str) -> str | None:
-    """Return a value as text: `true` for True, digits for a number."""
+def text_from_value(value: object) -> str | None:
+    """Return a value as chronicles write it, `true` for True, digits for a number, or None."""
     match value:
-        case None | str():
+        case str():
             return value
         case bool():
             return str(value).lower()
         case int() | float():
             return str(value)
         case _:
-            message = f"expected a text, a number or a truth value as '{key}', found {value!r}"
-            raise ValueError(message)
+            return None
+
+
+def _value(value: object, key: str) -> str | None:
+    text = text_from_value(value)
+    if text is None and value is not None:
+        message = f"expected a text, a number or a truth value as '{key}', found {value!r}"
+        raise ValueError(message)
+    return text

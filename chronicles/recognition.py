@@ -32,7 +32,7 @@ from chronicles.patterns import Values, projection
 from chronicles.prospects import EndedInstance, PartialInstance, partial_instance
 from chronicles.reporting import NonOverlapping
 from chronicles.routing import Routes, route
-from dyknow.source_text import nearest_name
+from dyknow.source_text import did_you_mean, nearest_name
 from dyknow.time import TimePoint
 
 __all__ = ["Recogniser"]
@@ -138,8 +138,7 @@ class Recogniser:
         """
         matcher = self._matchers.pop(name, None)
         if matcher is None:
-            nearest = nearest_name(name, self._matchers)
-            hint = f"; did you mean '{nearest}'?" if nearest else ""
+            hint = did_you_mean(nearest_name(name, self._matchers))
             raise ValueError(f"no chronicle called '{name}' is recognised{hint}")
         matcher.clear()
         self._used = set().union(*self._uses().values())

@@ -20,6 +20,7 @@ from dyknow.kpl.syntax import (
     Text,
     Time,
 )
+from dyknow.source_text import did_you_mean
 from dyknow.time import Duration
 
 __all__ = [
@@ -53,7 +54,7 @@ class NoSuchChronicleError(ServiceError):
     """No chronicle of this name is recognised."""
 
     def __init__(self, name: str, nearest: str | None) -> None:
-        hint = f"; did you mean '{nearest}'?" if nearest else ""
+        hint = did_you_mean(nearest)
         super().__init__(f"no chronicle called '{name}' is recognised{hint}")
 
 

@@ -6,7 +6,7 @@ value in a stream; see `dyknow.streams`.
 
 from collections.abc import Collection, Sequence
 
-from dyknow.source_text import Span
+from dyknow.source_text import Span, did_you_mean
 from dyknow.time import TimePoint, text_from_duration
 
 __all__ = [
@@ -65,7 +65,7 @@ class UnknownNameError(SpecificationError):
     """A name is used that nothing declares."""
 
     def __init__(self, kind: str, name: str, span: Span, nearest: str | None = None) -> None:
-        hint = f"; did you mean '{nearest}'?" if nearest else ""
+        hint = did_you_mean(nearest)
         super().__init__(f"no {kind} called '{name}'{hint}", span)
         self.name = name
 
@@ -141,7 +141,7 @@ class NoSuchLabelError(ServiceError):
     """There is no stream generator of this label."""
 
     def __init__(self, label: str, nearest: str | None = None) -> None:
-        hint = f"; did you mean '{nearest}'?" if nearest else ""
+        hint = did_you_mean(nearest)
         super().__init__(f"no stream generator called '{label}'{hint}")
         self.label = label
 
@@ -168,7 +168,7 @@ class NoSuchPrototypeError(ServiceError):
     """There is no knowledge process prototype of this name."""
 
     def __init__(self, name: str, nearest: str | None = None) -> None:
-        hint = f"; did you mean '{nearest}'?" if nearest else ""
+        hint = did_you_mean(nearest)
         super().__init__(f"no prototype called '{name}'{hint}")
         self.name = name
 

@@ -1,12 +1,12 @@
 """Places in a text that a person wrote, and an excerpt that points at one."""
 
 from bisect import bisect_right
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from difflib import get_close_matches
 from functools import cached_property
 
-__all__ = ["MADE_IN_PYTHON", "SourceText", "Span", "nearest_name"]
+__all__ = ["MADE_IN_PYTHON", "SourceText", "Span", "did_you_mean", "nearest_are", "nearest_name"]
 
 
 @dataclass(frozen=True)
@@ -76,3 +76,16 @@ def nearest_name(name: str, known: Iterable[str]) -> str | None:
     """Return the known name that a person most probably meant by *name*, if any is close."""
     close = get_close_matches(name, list(known), n=1, cutoff=0.6)
     return close[0] if close else None
+
+
+def did_you_mean(nearest: str | None) -> str:
+    """Return what to add to a message about an unknown name, given the nearest known one."""
+    return f"; did you mean '{nearest}'?" if nearest else ""
+
+
+def nearest_are(labels: Sequence[str]) -> str:
+    """Return what to add to a message about an unknown label, given the nearest known ones."""
+    if not labels:
+        return ""
+    verb = "are" if len(labels) > 1 else "is"
+    return f"; nearest {verb} " + ", ".join(f"'{label}'" for label in labels)

@@ -11,7 +11,7 @@ from dyknow.kpl.names import Declarations
 from dyknow.kpl.plan import Network
 from dyknow.kpl.printer import text_from
 from dyknow.kpl.syntax import Specification
-from dyknow.source_text import nearest_name
+from dyknow.source_text import did_you_mean, nearest_name
 from dyknow.streams.sample import Sample
 from dyknow.streams.table import Table
 from dyknow.time import MILLISECOND
@@ -238,8 +238,7 @@ def outputs_recognising(
         return outputs
     for name in names:
         if name not in by_name:
-            nearest = nearest_name(name, by_name)
-            hint = f"; did you mean '{nearest}'?" if nearest else ""
+            hint = did_you_mean(nearest_name(name, by_name))
             expected = f"'all', or some of {', '.join(by_name)} with commas between them{hint}"
             raise RequestError(place, expected, name)
     unwanted = set(told) - {by_name[name] for name in names}

@@ -20,16 +20,14 @@ from typing import Any
 
 from dyknow.errors import SpecificationError
 from dyknow.kpl.names import Declarations
-from dyknow.kpl.parser import parse_policy, parse_value
+from dyknow.kpl.parser import parse_policy, value_from
 from dyknow.kpl.printer import text_from
 from dyknow.kpl.syntax import (
     GeneratorDeclaration,
     Link,
-    Number,
     Setting,
     Specification,
     StreamTerm,
-    Truth,
     UnitInstance,
     Value,
 )
@@ -172,13 +170,7 @@ def _expected(kind: str, name: str, known: list[str]) -> str:
 
 
 def _value(given: object) -> Value:
-    match given:
-        case bool():
-            return Truth(given)
-        case int() | float():
-            return Number(given)
-        case _:
-            return parse_value(str(given))
+    return value_from(given if isinstance(given, bool | int | float) else str(given))
 
 
 def _plain(text: str) -> object:

@@ -8,7 +8,7 @@ from dyknow.kpl.assembly import Assembly, Part, name_of, policy_of
 from dyknow.kpl.syntax import StreamDeclaration, StreamTerm
 from dyknow.runtime.generators import Receive
 from dyknow.runtime.subscriptions import StreamProxy
-from dyknow.source_text import nearest_name
+from dyknow.source_text import did_you_mean, nearest_name
 
 __all__ = ["Output", "Outputs"]
 
@@ -68,8 +68,7 @@ class Outputs:
             ServiceError: There is no such output now.
         """
         if name not in self._outputs:
-            nearest = nearest_name(name, self._outputs)
-            hint = f"; did you mean '{nearest}'?" if nearest else ""
+            hint = did_you_mean(nearest_name(name, self._outputs))
             raise ServiceError(f"no output stream called '{name}'{hint}")
         output = self._outputs[name]
         label = self._assembly.parts[name_of(output.stream)].label

@@ -23,7 +23,7 @@ from dyknow.errors import (
 )
 from dyknow.kpl import syntax
 from dyknow.kpl.recovery import MAX_DEPTH, Outline
-from dyknow.kpl.syntax import Constraint, Specification, Text, Value
+from dyknow.kpl.syntax import Constraint, Number, Specification, Text, Truth, Value
 from dyknow.kpl.wording import wording_of
 from dyknow.mtl.parser import parse_formula
 from dyknow.mtl.syntax import TRUE, Formula
@@ -31,7 +31,14 @@ from dyknow.runtime.failures import OnFailure
 from dyknow.source_text import SourceText, Span, nearest_name
 from dyknow.time import MILLISECOND, Duration, duration_from_text
 
-__all__ = ["Reading", "parse_policy", "parse_specification", "parse_value", "read_specification"]
+__all__ = [
+    "Reading",
+    "parse_policy",
+    "parse_specification",
+    "parse_value",
+    "read_specification",
+    "value_from",
+]
 
 _WORD = re.compile(r"\w+|\S")
 _CLOSED = re.compile(r"\[[^\[\]()]*[\])]")
@@ -119,6 +126,23 @@ def parse_value(text: str) -> Value:
     (value,) = _transformer(leaves).transform(tree)
     found: Value = Text(text) if leaves.faults else value
     return found
+
+
+def value_from(given: object) -> Value:
+    """Return the value that a number, a truth value, or a text that KPL could have stands for.
+
+    Raises:
+        TypeError: It is none of these.
+    """
+    match given:
+        case bool():
+            return Truth(given)
+        case int() | float():
+            return Number(given)
+        case str():
+            return parse_value(given)
+        case _:
+            raise TypeError(f"expected a number, a truth value or a string, not {given!r}")
 
 
 @cache

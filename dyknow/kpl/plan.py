@@ -7,8 +7,8 @@ from dyknow.kpl.check import raise_faults
 from dyknow.kpl.implementations import Implementations, LinkFactory
 from dyknow.kpl.names import Declarations
 from dyknow.kpl.network import Network
-from dyknow.kpl.parser import parse_value
-from dyknow.kpl.syntax import Number, Specification, Truth, Value
+from dyknow.kpl.parser import value_from
+from dyknow.kpl.syntax import Specification, Value
 from dyknow.source_text import MADE_IN_PYTHON, nearest_name
 
 __all__ = ["Implementations", "LinkFactory", "Network", "build_network"]
@@ -30,7 +30,7 @@ def build_network(
         SpecificationErrors: Every fault of the specification, of the parameters, and of the
             settings and implementations of what is built.
     """
-    values = {name: _value(given) for name, given in (parameters or {}).items()}
+    values = {name: value_from(given) for name, given in (parameters or {}).items()}
     raise_faults(list(_unknown_parameters(specification, values)))
     network = Network(implementations, values)
     network.add(specification, outputs)
@@ -45,15 +45,3 @@ def _unknown_parameters(
         if name not in known:
             nearest = nearest_name(name, known)
             yield UnknownNameError("parameter", name, MADE_IN_PYTHON, nearest)
-
-
-def _value(given: object) -> Value:
-    match given:
-        case bool():
-            return Truth(given)
-        case int() | float():
-            return Number(given)
-        case str():
-            return parse_value(given)
-        case _:
-            raise TypeError(f"a parameter is a number, a truth value or a string, not {given!r}")

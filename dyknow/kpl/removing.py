@@ -21,7 +21,7 @@ from dyknow.kpl.syntax import (
     UnitDeclaration,
     UnitInstance,
 )
-from dyknow.source_text import nearest_name
+from dyknow.source_text import did_you_mean, nearest_name
 
 __all__ = ["declarations_called", "forbid_use"]
 
@@ -78,8 +78,7 @@ def _place_of(name: str, beginnings: Sequence[tuple[str, str]]) -> int:
         raise ServiceError(f"'{name}' may be {alternatives}; expected one of them")
     if not found:
         known = [called for _, called in beginnings]
-        nearest = nearest_name(name, [*known, *map(" ".join, beginnings)])
-        hint = f"; did you mean '{nearest}'?" if nearest else ""
+        hint = did_you_mean(nearest_name(name, [*known, *map(" ".join, beginnings)]))
         raise ServiceError(f"nothing is declared that is called '{name}'{hint}")
     return found[0]
 

@@ -21,7 +21,7 @@ from dyknow.kpl.syntax import (
     Synchronisation,
     UnitInstance,
 )
-from dyknow.source_text import nearest_name
+from dyknow.source_text import did_you_mean, nearest_name
 
 __all__ = ["Target", "replace_constraints"]
 
@@ -47,8 +47,7 @@ def replace_constraints(
     outputs = [each.name.text for each, _ in found if isinstance(each, StreamDeclaration)]
     labels = [placed.label.text for placed in Declarations(specification).placed]
     if isinstance(target, str) and target not in outputs:
-        nearest = nearest_name(target, outputs)
-        hint = f"; did you mean '{nearest}'?" if nearest else ""
+        hint = did_you_mean(nearest_name(target, outputs))
         raise ServiceError(f"no output stream called '{target}'{hint}")
     if not isinstance(target, str) and target[0] not in labels:
         raise NoSuchLabelError(target[0], nearest_name(target[0], labels))

@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 
 from dyknow.errors import DyKnowError, ServiceError, SpecificationError
-from dyknow.source_text import Span
+from dyknow.source_text import Span, did_you_mean, nearest_are
 from dyknow.streams.policy import Violation
 from dyknow.time import text_from_duration
 
@@ -20,10 +20,8 @@ class UngroundedFeatureError(SpecificationError):
     """No stream gives the values of a feature."""
 
     def __init__(self, feature: str, expected: str, nearest: Sequence[str], span: Span) -> None:
-        close = ", ".join(f"'{label}'" for label in nearest)
-        hint = f"; nearest are {close}" if len(nearest) > 1 else f"; nearest is {close}"
         message = f"no stream for the feature '{feature}': expected {expected}"
-        super().__init__(message + (hint if nearest else ""), span)
+        super().__init__(message + nearest_are(nearest), span)
         self.feature = feature
         self.nearest = tuple(nearest)
 
@@ -55,7 +53,7 @@ class NoSuchEvaluationError(ServiceError):
     """Nothing is being evaluated under this name."""
 
     def __init__(self, name: str, nearest: str | None) -> None:
-        hint = f"; did you mean '{nearest}'?" if nearest else ""
+        hint = did_you_mean(nearest)
         super().__init__(f"nothing called '{name}' is being evaluated{hint}")
 
 

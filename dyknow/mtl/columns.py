@@ -20,7 +20,7 @@ from dyknow.mtl import syntax
 from dyknow.mtl.printer import text_from_formula
 from dyknow.mtl.syntax import Atom, Feature, Term, descendants
 from dyknow.mtl.truth import OfState, StateTruth
-from dyknow.source_text import nearest_name
+from dyknow.source_text import did_you_mean, nearest_name
 
 __all__ = ["AtomColumns", "Compiled", "evaluate_atoms"]
 
@@ -140,8 +140,7 @@ class AtomColumns:
         for key in (term, self._bracketed[term]):
             if key in features:
                 return key
-        nearest = nearest_name(term, features)
-        hint = f"; did you mean '{nearest}'?" if nearest else ""
+        hint = did_you_mean(nearest_name(term, features))
         raise FeatureError(term, "a value in the state", f"none{hint}")
 
 

@@ -16,7 +16,7 @@ from dyknow.mtl.progression import DEFAULT_LIMIT, ProgressionTable
 from dyknow.mtl.quantifiers import Domains, expand
 from dyknow.mtl.symbols import Symbols, extract_symbols
 from dyknow.mtl.syntax import Atom, Formula, TimeModel, Verdict
-from dyknow.source_text import nearest_name
+from dyknow.source_text import did_you_mean, nearest_name
 from dyknow.time import TimePoint
 
 __all__ = ["FormulaGroup"]
@@ -152,8 +152,7 @@ class FormulaGroup:
 
     def _monitor(self, name: str) -> Monitor:
         if name not in self._monitors:
-            nearest = nearest_name(name, self._monitors)
-            hint = f"; did you mean '{nearest}'?" if nearest else ""
+            hint = did_you_mean(nearest_name(name, self._monitors))
             raise ValueError(f"no formula called '{name}'{hint}")
         return self._monitors[name]
 

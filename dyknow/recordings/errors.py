@@ -4,7 +4,7 @@ from collections.abc import Iterable
 from pathlib import Path
 
 from dyknow.errors import DyKnowError
-from dyknow.source_text import nearest_name
+from dyknow.source_text import did_you_mean, nearest_name
 
 __all__ = [
     "DamagedRecordingError",
@@ -68,8 +68,7 @@ class MissingStreamError(RecordingError):
     """The recording has no stream of this topic."""
 
     def __init__(self, path: Path, topic: str, known: Iterable[str]) -> None:
-        nearest = nearest_name(topic, list(known))
-        hint = f"; did you mean '{nearest}'?" if nearest else ""
+        hint = did_you_mean(nearest_name(topic, list(known)))
         super().__init__(path, f"no stream '{topic}' has been recorded{hint}")
         self.topic = topic
 

@@ -3,7 +3,7 @@
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from dyknow.source_text import SourceText, Span, nearest_name
+from dyknow.source_text import SourceText, Span, did_you_mean, nearest_are, nearest_name
 
 
 @settings(derandomize=True, deadline=None, max_examples=200)
@@ -40,3 +40,12 @@ def test_the_nearest_name_is_the_one_probably_meant():
     """A close name is offered, and none if none is close."""
     assert nearest_name("spede", ["speed", "position"]) == "speed"
     assert nearest_name("colour", ["speed", "position"]) is None
+
+
+def test_what_is_near_is_told_behind_a_message():
+    """Nothing is if nothing is near."""
+    assert did_you_mean(None) == ""
+    assert did_you_mean("cars") == "; did you mean 'cars'?"
+    assert nearest_are([]) == ""
+    assert nearest_are(["cars"]) == "; nearest is 'cars'"
+    assert nearest_are(["cars", "car's"]) == "; nearest are 'cars', 'car's'"

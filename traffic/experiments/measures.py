@@ -16,7 +16,7 @@ from typing import Annotated, NamedTuple
 
 from pydantic import BeforeValidator
 
-from dyknow.source_text import nearest_name
+from dyknow.source_text import did_you_mean, nearest_name
 from traffic.experiments.intervals import Interval, wilson
 
 __all__ = [
@@ -116,8 +116,7 @@ def _checked(value: object) -> object:
     if form is None:
         raise ValueError(f"expected a measure such as 'overtake.recall', found '{value}'")
     if form[2] not in MEASURES:
-        nearest = nearest_name(form[2], MEASURES)
-        hint = f"; did you mean '{nearest}'?" if nearest else ""
+        hint = did_you_mean(nearest_name(form[2], MEASURES))
         known = ", ".join(MEASURES)
         raise ValueError(f"no measure called '{form[2]}'{hint} (there are {known})")
     return value

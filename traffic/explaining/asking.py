@@ -5,7 +5,7 @@ from contextlib import ExitStack
 from dataclasses import dataclass
 from pathlib import Path
 
-from dyknow.source_text import nearest_name
+from dyknow.source_text import did_you_mean, nearest_name
 from traffic.errors import ExplanationError, RequestError
 from traffic.explaining.explanation import Explanation, ListedRecognition
 from traffic.explaining.kept import KeptRun, open_kept_run
@@ -133,8 +133,7 @@ def number_of(run: KeptRun, text: str) -> int:
             f"'{text}' was recognised more than once in '{run.folder}'; expected one of the "
             f"numbers {numbers}"
         )
-    nearest = nearest_name(text, names)
-    hint = f"; did you mean '{nearest}'?" if nearest else ""
+    hint = did_you_mean(nearest_name(text, names))
     raise ExplanationError(
         f"expected the number of a recognition, as 'traffic explain {run.folder}' lists them, "
         f"found '{text}'{hint}"

@@ -17,7 +17,7 @@ from dyknow.mtl.parser import parse_document
 from dyknow.mtl.printer import text_from_formula
 from dyknow.mtl.quantifiers import Domains, expand
 from dyknow.mtl.syntax import Feature, Formula, Node, descendants, parts
-from dyknow.source_text import Span, nearest_name
+from dyknow.source_text import Span, did_you_mean, nearest_name
 from traffic.errors import RequestError
 
 __all__ = ["Question", "domains_from", "forbid_missing", "read_question"]
@@ -107,8 +107,7 @@ def forbid_missing(question: Question, terms: Collection[str], place: str) -> No
     """
     missing: dict[Span, SpecificationError] = {}
     for term in question.sorts.keys() - set(terms):
-        nearest = nearest_name(term, terms)
-        hint = f"; did you mean '{nearest}'?" if nearest else ""
+        hint = did_you_mean(nearest_name(term, terms))
         span = question.places[term]
         message = f"the state at {place} has no feature '{term}'{hint}"
         missing.setdefault(span, SpecificationError(message, span))

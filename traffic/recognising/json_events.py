@@ -10,7 +10,7 @@ from typing import Any
 
 from pydantic_core import from_json
 
-from chronicles.events import Event
+from chronicles.events import Event, text_from_value
 from dyknow.time import MILLISECOND, TimePoint
 from traffic.errors import LineError
 from traffic.reading.json_lines import columns_in, forbid_repetition, refuse
@@ -104,7 +104,7 @@ class JsonEvents:
             return ()
         if not isinstance(arguments, list):
             raise self._unfit("arguments", "an array", arguments)
-        found = [_text(argument) for argument in arguments]
+        found = [text_from_value(argument) for argument in arguments]
         for argument, text in zip(arguments, found, strict=True):
             if text is None:
                 raise self._unfit("arguments", "texts, numbers or booleans in the array", argument)
@@ -112,7 +112,7 @@ class JsonEvents:
 
     def _value(self, document: dict[str, Any], key: str) -> str | None:
         value = document.get(key)
-        text = _text(value)
+        text = text_from_value(value)
         if text is None and value is not None:
             raise self._unfit(key, "a text, a number or a boolean", value)
         return text
@@ -122,16 +122,3 @@ class JsonEvents:
 
     def _place_of(self, key: str) -> str:
         return self._lines.place(columns_in(self._lines).get(key))
-
-
-def _text(value: object) -> str | None:
-    """Return a value as chronicles write it: `true` for True, digits for a number."""
-    match value:
-        case str():
-            return value
-        case bool():
-            return str(value).lower()
-        case int() | float():
-            return str(value)
-        case _:
-            return None

@@ -16,7 +16,7 @@ from dyknow.kpl.plan import Network
 from dyknow.recordings.recorder import Recorder
 from dyknow.runtime.generators import Label
 from dyknow.service.governor import PeriodChange
-from dyknow.source_text import nearest_name
+from dyknow.source_text import did_you_mean, nearest_name
 from dyknow.streams.sample import Sample
 from dyknow.time import TimePoint
 from networks.roads import RoadMap
@@ -150,8 +150,7 @@ def _wanted(request: RecordingRequest, system: MonitoringSystem) -> _Wanted:
 
 
 def _expected(label: str, built: Sequence[str]) -> str:
-    nearest = nearest_name(label, built)
-    hint = f"; did you mean '{nearest}'?" if nearest else ""
+    hint = did_you_mean(nearest_name(label, built))
     return f"labels of this run, which has {', '.join(built)}{hint}"
 
 

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
-from dyknow.source_text import nearest_name
+from dyknow.source_text import did_you_mean, nearest_name
 from traffic.bundled import data_folder
 from traffic.errors import RequestError
 
@@ -85,8 +85,7 @@ def chosen(known: Collection[str], names: Collection[str], folder: Path) -> tupl
     """
     for name in names:
         if name not in known:
-            nearest = nearest_name(name, list(known))
-            hint = f"; did you mean '{nearest}'?" if nearest else ""
+            hint = did_you_mean(nearest_name(name, list(known)))
             expected = f"names of recordings in '{folder}'{hint}"
             raise RequestError("traffic regress", expected, name)
     return tuple(name for name in known if not names or name in names)

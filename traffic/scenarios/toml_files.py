@@ -8,7 +8,7 @@ from typing import Any
 
 from pydantic_core import ErrorDetails
 
-from dyknow.source_text import SourceText, nearest_name
+from dyknow.source_text import SourceText, did_you_mean, nearest_name
 from traffic.errors import TrafficError
 from traffic.scenarios.places import KeyPath, places_of_keys, span_of
 
@@ -66,8 +66,7 @@ def message_of(detail: ErrorDetails, known_keys: Callable[[KeyPath], Sequence[st
     name = str(detail["loc"][-1]) if detail["loc"] else ""
     match detail["type"]:
         case "extra_forbidden":
-            nearest = nearest_name(name, known_keys(detail["loc"]))
-            hint = f"; did you mean '{nearest}'?" if nearest else ""
+            hint = did_you_mean(nearest_name(name, known_keys(detail["loc"])))
             return f"no key called '{name}' here{hint}"
         case "too_short":
             return f"expected at least one item for '{name}', found none"

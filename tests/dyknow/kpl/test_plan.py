@@ -186,7 +186,7 @@ def test_all_that_is_wrong_is_said_at_once():
 
 def test_a_parameter_must_be_something_that_can_be_written():
     """An object of Python is no value of KPL."""
-    with pytest.raises(TypeError, match="a parameter is a number, a truth value or a string"):
+    with pytest.raises(TypeError, match="expected a number, a truth value or a string"):
         build_network(parse_specification(TEXT), Implementations(), {"which": object()})
 
 
