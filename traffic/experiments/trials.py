@@ -5,13 +5,14 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from dyknow.time import duration_from_text
 from traffic.experiments.designs import Cell, Design, Level, LevelRange
 from traffic.scenarios.places import KeyPath
 
 __all__ = ["MOST_NUMBERS", "Trial", "trials_of"]
 
 MOST_NUMBERS = 100
-"""With so many numbers of one factor at the most the network of processes is tried."""
+"""With so many numbers or times of one factor at the most the network of processes is tried."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -49,15 +50,26 @@ def _ends(levels: tuple[Level, ...] | LevelRange) -> tuple[Level, ...]:
 
 
 def _spared(levels: Sequence[Level]) -> set[int]:
-    """Return where the numbers are whose neighbours are tried in their place.
+    """Return where the numbers and times are whose neighbours are tried in their place.
 
-    Of many numbers of one type these are all but the smallest, the largest, and some between.
+    Of many of one type these are all but the smallest, the largest, and some between.
     """
+    sizes = [_size(level) for level in levels]
     spared: set[int] = set()
-    for kind in (int, float):
-        places = [at for at, level in enumerate(levels) if type(level) is kind]
+    for kind in (int, float, str):
+        sized = [(size, at) for at, size in enumerate(sizes) if type(levels[at]) is kind]
+        places = [at for _, at in sorted((size, at) for size, at in sized if size is not None)]
         if len(places) > MOST_NUMBERS:
-            places.sort(key=lambda at: levels[at])
             tried = np.linspace(0, len(places) - 1, MOST_NUMBERS).round().astype(int)
             spared |= {*places} - {places[at] for at in tried}
     return spared
+
+
+def _size(level: Level) -> float | None:
+    """Return a number, or a time as one; None for anything else."""
+    if not isinstance(level, str):
+        return level
+    try:
+        return duration_from_text(level)
+    except ValueError:
+        return None

@@ -3,6 +3,7 @@
 from itertools import pairwise
 from pathlib import Path
 
+import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -44,6 +45,19 @@ def test_every_level_occurs_and_the_outermost_numbers_are_tried_whole(
             assert {min(given_), max(given_)} <= set(tried)
             places = sorted(sorted(given_).index(each) for each in tried)
             assert max(b - a for a, b in pairwise(places)) <= len(given_) / (MOST_NUMBERS - 1) + 1
+
+
+@pytest.mark.parametrize("more", [(), ("soon", "")])
+def test_times_are_tried_as_numbers_are(more: tuple[str, ...]) -> None:
+    """They are put in order by how long they are; other texts are all tried."""
+    times = ["2 min", *(f"{number} ms" for number in range(1000, 1400)), "30 s", "9 us"]
+
+    trials = list(trials_of(design(factors={"a": [*times, *more]})))
+
+    assert [trial.cell["a"] for trial in trials] == [*times, *more]
+    whole = {str(trial.cell["a"]) for trial in trials if trial.is_whole}
+    assert {"2 min", "9 us", *more} <= whole
+    assert len(whole) == MOST_NUMBERS + len(more)
 
 
 def test_cells_that_are_listed_are_all_tried() -> None:
