@@ -43,6 +43,7 @@ _SETTINGS = {
     "distributed.comm.timeouts.connect": f"{_SECONDS}s",
     "distributed.scheduler.allowed-failures": 3,
     "distributed.worker.memory.terminate": False,
+    "distributed.worker.profile.enabled": False,  # it would keep half a megabyte of each run
     "distributed.admin.tick.limit": "1h",
 }
 
