@@ -17,7 +17,7 @@ from traffic.experiments.trials import trials_of
 from traffic.request import RunRequest
 from traffic.running import CheckedRequest, RequestChecks
 from traffic.scenarios.places import KeyPath
-from traffic.scenarios.toml_files import faults_of, message_of, read_toml
+from traffic.scenarios.toml_files import details_of, faults_of, message_of, read_toml
 
 __all__ = ["CheckedDesign", "bundled_designs", "check_design", "find_design", "read_design"]
 
@@ -61,7 +61,7 @@ def read_design(path: Path, folder: Path | None = None) -> Design:
     try:
         design = Design.model_validate({**where, **values})
     except ValidationError as error:
-        found = [(message_of(each, _known_keys), each["loc"]) for each in error.errors()]
+        found = [(message_of(each, _known_keys), each["loc"]) for each in details_of(error)]
         raise ExperimentError(*dict.fromkeys(faults_of(found, source))) from error
     if faults := faults_of(_contradictions(design), source):
         raise ExperimentError(*faults)

@@ -34,7 +34,7 @@ from traffic.regression.cutting import Piece
 from traffic.regression.suite import replace_text
 from traffic.request import RunRequest
 from traffic.scenarios.places import KeyPath
-from traffic.scenarios.toml_files import faults_of, message_of, read_toml
+from traffic.scenarios.toml_files import details_of, faults_of, message_of, read_toml
 
 __all__ = ["Making", "Manifest", "read_makings", "read_manifest", "text_from_making"]
 
@@ -144,7 +144,7 @@ def read_makings(path: Path) -> tuple[Making, ...]:
         makings = _File.model_validate(values).recordings
     except ValidationError as error:
         found = dict.fromkeys(
-            (message_of(each, _known_keys), each["loc"]) for each in error.errors()
+            (message_of(each, _known_keys), each["loc"]) for each in details_of(error)
         )
         raise RegressionError(*faults_of(found, source)) from error
     if faults := faults_of(_repeated(makings), source):

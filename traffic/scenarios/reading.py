@@ -27,7 +27,7 @@ from traffic.scenarios.model import (
     VehicleType,
 )
 from traffic.scenarios.places import KeyPath
-from traffic.scenarios.toml_files import faults_of, message_of, read_toml
+from traffic.scenarios.toml_files import details_of, faults_of, message_of, read_toml
 
 __all__ = [
     "bundled_scenarios",
@@ -88,7 +88,7 @@ def read_scenario(path: Path, changes: Mapping[str, object] | None = None) -> Sc
             {"name": path.stem, **values}, context={"folder": path.parent}
         )
     except ValidationError as error:
-        found = [_fault(detail) for detail in error.errors()]
+        found = [_fault(detail) for detail in details_of(error)]
         _raise_for_changes(found, changed)
         raise ScenarioError(*faults_of(found, source)) from error
     misplaced = list(_misplaced_names(scenario))

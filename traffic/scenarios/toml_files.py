@@ -6,13 +6,14 @@ from collections.abc import Callable, Iterable, Sequence
 from pathlib import Path
 from typing import Any
 
+from pydantic import ValidationError
 from pydantic_core import ErrorDetails
 
 from dyknow.source_text import SourceText, did_you_mean, nearest_name
 from traffic.errors import TrafficError
 from traffic.scenarios.places import KeyPath, places_of_keys, span_of
 
-__all__ = ["faults_of", "message_of", "read_toml"]
+__all__ = ["details_of", "faults_of", "message_of", "read_toml"]
 
 _EXPECTED = {
     "dict_type": "a table",
@@ -53,6 +54,19 @@ def faults_of(found: Iterable[tuple[str, KeyPath]], source: SourceText) -> list[
     return [
         f"{span.place}: {message}\n{span.excerpt()}"
         for span, message in sorted(spans, key=lambda pair: pair[0].start)
+    ]
+
+
+def details_of(error: ValidationError) -> list[ErrorDetails]:
+    """Return what a model says of a file, without lists that are too short for their faults."""
+    details = error.errors()
+    return [
+        each
+        for each in details
+        if each["type"] != "too_short"
+        or not any(
+            other["loc"][: len(each["loc"])] == each["loc"] for other in details if other != each
+        )
     ]
 
 

@@ -92,6 +92,15 @@ def test_a_fault_is_told_once(tmp_path: Path) -> None:
     assert found == ["d.toml:8:1: expected a number, a text, or true or false, found [1]"]
 
 
+def test_a_list_with_faults_is_not_called_empty(tmp_path: Path) -> None:
+    """A measure that there is not is one fault; a list of none is another one."""
+    (unknown,) = faults(GOOD.replace("overtake.recall", "overtake.recal"), tmp_path)
+    (empty,) = faults(GOOD.replace('["overtake.recall"]', "[]"), tmp_path)
+
+    assert unknown.startswith("d.toml:3:1: no measure called 'recal'; did you mean 'recall'?")
+    assert empty == "d.toml:3:1: expected at least one item for 'measures', found none"
+
+
 def test_faults_among_many_levels_are_found(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
